@@ -74,7 +74,7 @@ class Batch(ABC):
         except SamplingCancelled:
             return
         except (ValueError, MemoryError) as error:
-            sentence = str(error) or "The memory does not suffice; make fewer surfels."
+            sentence = str(error) or "Not enough memory; make fewer surfels."
             self.refused.append((conversion.name, sentence))
         else:
             self._sampled.append(conversion)

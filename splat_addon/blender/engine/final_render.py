@@ -183,7 +183,7 @@ def sentence_of(error: Exception) -> str:
         return str(error)
     traceback.print_exception(error)
     if isinstance(error, MemoryError):
-        return "The memory does not suffice; render fewer surfels, or a smaller picture."
+        return "Not enough memory; render fewer surfels or a smaller picture."
     return f"This is a fault of the extension ({type(error).__name__}: {error}); the console says where it happened."
 
 

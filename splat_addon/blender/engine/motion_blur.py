@@ -57,7 +57,7 @@ def moving_time(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) 
 def motion_blur_notes(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer, samples: int) -> Iterator[str]:
     """Reasons why a scene that requests motion blur will not show any."""
     if scene.render.use_motion_blur and view_layer.use_motion_blur and samples == 1:
-        yield "Motion blur needs more than one of the render properties' Samples: this picture is sharp all over"
+        yield "Motion blur needs Samples above 1 in the render properties; nothing is blurred in this picture"
 
 
 def _under_curve(curve: bpy.types.CurveMapping, places: list[float]) -> np.ndarray:

@@ -156,9 +156,9 @@ def depth_of_field_notes(camera_object: bpy.types.Object, samples: int) -> Itera
     if not camera_object.data.dof.use_dof:
         return
     if camera_object.data.type != "PERSP":
-        yield "Depth of field is for perspective cameras: this picture is sharp all over"
+        yield "Depth of field needs a perspective camera; nothing is blurred in this picture"
     elif samples == 1:
-        yield "Depth of field needs more than one of the render properties' Samples: this picture is sharp all over"
+        yield "Depth of field needs Samples above 1 in the render properties; nothing is blurred in this picture"
 
 
 def _lens(camera_object: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Lens | None:

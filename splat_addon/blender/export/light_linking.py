@@ -54,7 +54,10 @@ class LightSets:
         names = (entry.object.original.name, *((entry.parent.original.name,) if entry.is_instance else ()))
         lit_by = tuple(receivers.has(names) for receivers in self._receivers)
         if lit_by not in self._numbers and len(self._numbers) == MAX_LIGHT_SETS:
-            self._notes.add(f"More than {MAX_LIGHT_SETS} sets of objects by light linking; others are lit as the first")
+            self._notes.add(
+                f"Light linking uses more than {MAX_LIGHT_SETS} different sets of objects; the further ones are lit "
+                "like the first"
+            )
             return 0
         return self._numbers.setdefault(lit_by, len(self._numbers))
 

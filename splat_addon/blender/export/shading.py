@@ -96,7 +96,7 @@ def finite_radiance(radiance: tuple[float, float, float], owner: str, notes) -> 
     if all(abs(channel) <= MAX_RADIANCE for channel in radiance):
         return radiance
     red, green, blue = radiance
-    notes.add(f"{owner} sends out {red:g}, {green:g}, {blue:g}, which no picture holds; it is black")
+    notes.add(f"{owner} emits {red:g}, {green:g}, {blue:g}, more than a picture can store; it is rendered black")
     return 0.0, 0.0, 0.0
 
 
@@ -109,7 +109,10 @@ def shading_material(material: bpy.types.Material | None, notes, own: Collection
         return Material(index=material.pass_index if material else 0)
     node = output_source(material.node_tree, "OUTPUT_MATERIAL", *_SHADERS)
     if node is None:
-        notes.add(f"The material {material.name!r} has no Principled BSDF at its output; it is shaded as a default one")
+        notes.add(
+            f"The material {material.name!r} has no shader at its output that this engine supports; the default "
+            "material is used"
+        )
         return Material(index=material.pass_index)
     for sentence in passed_over.of_material(material, node):
         notes.add(sentence)

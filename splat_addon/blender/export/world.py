@@ -84,7 +84,7 @@ def _read(picture: _Picture) -> tuple[Environment, tuple[str, ...]]:
     pixels = linear_pixels(image, keep_alpha=False)[..., :3]
     bad = ~(np.abs(pixels) <= MAX_RADIANCE)
     if bad.any():
-        notes.append(f"The world's picture {image.name!r} has numbers that no picture holds; they count as 0")
+        notes.append(f"The world's picture {image.name!r} has infinite or too large numbers; they count as 0")
         pixels = np.where(bad, 0, pixels)
     steps = [-(-edge // MAX_EDGE) for edge in pixels.shape[:2]]
     if max(steps) > 1:
@@ -116,7 +116,10 @@ def _picture(socket: bpy.types.NodeSocket, world: bpy.types.World, notes) -> _Pi
     if node is None or node.type != "TEX_ENVIRONMENT" or node.image is None:
         return None
     if node.projection != "EQUIRECTANGULAR":
-        notes.add(f"The world {world.name!r} has a picture in {node.projection.title()} projection, read as none")
+        notes.add(
+            f"The world {world.name!r} has a picture in {node.projection.title()} projection, which this engine does "
+            "not support; the picture is left out"
+        )
         return None
     rotation = np.eye(3)
     links = node.inputs["Vector"].links
@@ -128,7 +131,10 @@ def _picture(socket: bpy.types.NodeSocket, world: bpy.types.World, notes) -> _Pi
         links = mapping.inputs["Vector"].links
         _note_unused(mapping, world, notes)
     if links and not (links[0].from_node.type == "TEX_COORD" and links[0].from_socket.name == "Generated"):
-        notes.add(f"The world {world.name!r} places its picture by more than generated coordinates and a Mapping node")
+        notes.add(
+            f"The world {world.name!r} places its picture with more nodes than Mapping and generated coordinates; the "
+            "others are ignored"
+        )
     return _Picture(node.image, rotation)
 
 

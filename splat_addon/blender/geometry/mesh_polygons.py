@@ -45,9 +45,15 @@ def left_out_of_polygons(owner: str, mesh: TriangleMesh) -> Iterator[str]:
     if any(surface.normal_map is not None and normal_map_texture(surface) is None for surface in _used(mesh)):
         yield f"{owner} has a normal map that is not one image in tangent space; render it as surfels to see it"
     if names := sorted({CHANNEL_NAMES[name] for surface in _used(mesh) for name in _only_at_corners(surface)}):
-        yield f"{owner} has an image for its {' and '.join(names)}, which polygons show at corners; render as surfels"
+        yield (
+            f"{owner} has an image for its {' and '.join(names)}, of which polygons show only the values at their "
+            "corners; render it as surfels"
+        )
     if is_transparent(mesh):
-        yield f"{owner} is transparent, which polygons are only by their colour's image; render it as surfels"
+        yield (
+            f"{owner} is transparent, but polygons show only the transparency of their colour's image; render it as "
+            "surfels"
+        )
 
 
 def _only_at_corners(surface: Surface) -> Iterator[str]:

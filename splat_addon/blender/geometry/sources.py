@@ -166,8 +166,8 @@ def why_nothing(source: bpy.types.Object, shown: Shown, points: int) -> str:
         family = sorted(other.name for other in metaball_family(source) if other != source)
         if family:
             return (
-                f"Its family of metaballs, with {', '.join(map(repr, family))}, is one mesh, which another of them "
-                "has; select all of them."
+                f"It forms one mesh with the metaballs {', '.join(map(repr, family))}, and another of them has that "
+                "mesh; select all of them."
             )
     if "POINTCLOUD" in shown.types:
         return (

@@ -37,4 +37,4 @@ def file_sentence(error: Exception) -> str:
     """The message for an error: a ValueError's own sentence, or an OSError's reason without its number."""
     if isinstance(error, OSError):
         return f"{error.strerror or error}."
-    return str(error) or "The memory does not suffice; use fewer surfels."
+    return str(error) or "Not enough memory; use fewer surfels."

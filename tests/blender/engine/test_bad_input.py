@@ -251,7 +251,7 @@ def test_an_infinite_world_and_material_are_named_and_black(strength, good, scen
     scene.surfel_splatting.shading, scene.render.film_transparent = "principled", False
     assert np.array_equal(picture()[16, 16], (0, 0, 0, 1))
     text = said()
-    assert "The material 'glow' sends out" in text and "The world 'sky' sends out" in text
+    assert "The material 'glow' emits" in text and "The world 'sky' emits" in text
 
 
 def add_sky(scene, width, height):
@@ -316,7 +316,7 @@ def test_a_material_without_a_principled_node_is_named(good, assert_good_is_draw
     material.node_tree.nodes.clear()
     good.data.materials.append(material)
     assert_good_is_drawn()
-    assert "The material 'bare' has no Principled BSDF at its output" in said()
+    assert "The material 'bare' has no shader at its output" in said()
 
 
 def test_an_empty_material_slot_is_no_mishap(good, assert_good_is_drawn, said):

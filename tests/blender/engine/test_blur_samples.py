@@ -25,7 +25,7 @@ def test_depth_of_field_takes_samples_by_itself(scene, blurred, picture, said):
     assert np.unique(seen[..., 3]).size > 8 and "Depth of field" not in said()
     scene.surfel_splatting.blur_samples = 1
     assert not np.array_equal(picture(), seen)
-    assert "Depth of field needs more than one" in said()
+    assert "Depth of field needs Samples above 1" in said()
 
 
 def test_motion_blur_takes_samples_by_itself(scene, blurred, picture):

@@ -71,7 +71,7 @@ def test_the_focus_object_is_sharp(scene, camera, add_surfels, picture):
 def test_one_sample_is_sharp_and_says_so(scene, camera, discs, picture, said):
     made = camera()
     blurred = picture()
-    assert "Depth of field needs more than one of the render properties' Samples" in said()
+    assert "Depth of field needs Samples above 1" in said()
     made.data.dof.use_dof = False
     np.testing.assert_array_equal(picture(), blurred)
     assert "Depth of field" not in said()
@@ -82,7 +82,7 @@ def test_a_parallel_camera_is_sharp_and_says_so(scene, camera, discs, picture, s
     made.data.type, made.data.ortho_scale = "ORTHO", 4
     scene.surfel_splatting.samples = 2
     picture()
-    assert "Depth of field is for perspective cameras" in said()
+    assert "Depth of field needs a perspective camera" in said()
 
 
 def test_a_focus_that_is_no_distance_is_an_error(camera, discs, picture):

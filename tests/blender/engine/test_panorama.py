@@ -127,4 +127,4 @@ def test_what_is_seen_from_the_middle_is_sampled_as_finely_as_its_pixels(scene, 
 def test_depth_of_field_says_that_it_is_for_perspective_cameras(scene, camera, picture, said):
     camera("all around").data.dof.use_dof = True
     picture()
-    assert "Depth of field is for perspective cameras" in said()
+    assert "Depth of field needs a perspective camera" in said()

@@ -161,7 +161,7 @@ def test_what_polygons_do_not_show_is_said(look, picture, said):
     bpy.context.object.data.materials.append(principled(Alpha=0.5))
     bpy.context.object.surfel_splatting.render_as = "POLYGONS"
     picture()
-    assert "Cube is transparent, which polygons are only by" in said()
+    assert "Cube is transparent, but polygons show only" in said()
 
 
 def test_what_is_transparent_becomes_surfels_unless_its_object_says_otherwise(look, picture, said):
@@ -173,7 +173,7 @@ def test_what_is_transparent_becomes_surfels_unless_its_object_says_otherwise(lo
     assert picture()[..., 3].max() == 1 and set(counts()) == {"polygon_meshes", "triangles"}
     mesh.polygons[0].material_index = 1
     assert picture()[..., 3].max() == pytest.approx(0.5, abs=0.01) and "triangles" not in counts()
-    assert "which polygons are" not in said()
+    assert "but polygons show" not in said()
 
 
 def test_broken_vertices_take_their_triangles_with_them(look, picture):
@@ -405,5 +405,5 @@ def test_images_that_polygons_show_at_corners_alone_are_named(channel, look, pic
     picture()
     name = {"Emission Color": "emission", "Roughness": "roughness"}.get(channel)
     told = said()
-    assert (f"Cube has an image for its {name}, which polygons show at corners" in told) == (name is not None)
-    assert ("at corners" in told) == (name is not None)
+    assert (f"Cube has an image for its {name}, of which polygons show only" in told) == (name is not None)
+    assert ("at their corners" in told) == (name is not None)

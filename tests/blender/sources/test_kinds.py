@@ -128,7 +128,7 @@ def test_a_family_of_metaballs_is_converted_once(convert, capfd):
     add_metaballs()
     made = convert(resolution=32)
     assert [m.name for m in made] == ["Mball surfels"]
-    assert "Mball.001: Its family of metaballs, with 'Mball', is one mesh" in capfd.readouterr().out
+    assert "Mball.001: It forms one mesh with the metaballs 'Mball'" in capfd.readouterr().out
 
 
 def only_points(tree, start, end):
