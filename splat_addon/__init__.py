@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Surfel splatting: meshes become surfels, and surfels become pictures.
 
-Layers, bottom to top: `surfels` < `sampling`, `interchange`, `hierarchy` < `rendering` < `reference` < `blender`;
-imports only point downwards.
+Layers, bottom to top: `surfels` < `sampling`, `interchange`, `hierarchy` < `streaming` < `rendering` < `reference` <
+`blender`; imports only point downwards.
 Everything below `blender` is plain Python with numpy, so importing this package needs no Blender.
 """
 
