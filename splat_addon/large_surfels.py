@@ -12,7 +12,7 @@ import numpy as np
 
 #: Steps per radius in which renderers store blend depths.
 BLEND_STEPS = 256
-#: The blend depth of large surfels, in steps, by the edge of their block in cells; and that of samples, at least.
+#: Edge of a large surfel's block in cells -> its blend depth in steps; and the least blend depth of samples in steps.
 STEPS_OF_LARGE, STEPS_OF_SAMPLES = {3: 2, 9: 1}, 3
 
 #: Half-axis of the splat of a block, and of a sample, relative to the edge of the block or cell. At 0.85 the sum of the

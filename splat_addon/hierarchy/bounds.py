@@ -29,7 +29,7 @@ _ROUNDING = np.float32(1e-5)
 _TURNS = np.linspace(0, 2 * np.pi, 12, endpoint=False)
 _RIM = np.stack([np.cos(_TURNS), np.sin(_TURNS)], axis=1)
 PLACES = np.column_stack([np.ones(18), np.vstack([_RIM, _RIM[::2] / 2])]).astype(np.float32)
-#: In so many portions they are compared, so that temporaries stay in the processor's cache.
+#: They are compared in this many portions, so that temporaries stay in the processor's cache.
 _PORTIONS = 6
 
 

@@ -29,8 +29,9 @@ _LEAST_MERGED = 0.1
 #: A surfel waits for larger cells if its larger half-axis exceeds this many edges of the cell.
 _LARGEST = 1.25 * np.sqrt(3)
 
-#: Shares of the time: of all levels in building; in that, of the surfels as nodes; of each level in what is left for it
-#: and those above it; and in a level, of ordering, and of that and merging.
+#: Shares of the progress. _MERGING: how far building is when all levels are merged. _LEAVES: how far merging is when
+#: the surfels are nodes. _OF_THE_REST: what a level takes of the time that is left for it and those above it.
+#: _ORDERED, _MERGED: how far a level is when its rows are in order, and when they are merged.
 _MERGING, _LEAVES, _OF_THE_REST, _ORDERED, _MERGED = 0.9, 0.05, 0.85, 0.25, 0.7
 
 #: Maximum doublings between the smallest and the largest cell.

@@ -162,7 +162,7 @@ class _Near:
         beside = np.array([(a << 2 * _BITS) + (b << _BITS) for a in (-1, 0, 1) for b in (-1, 0, 1)])
         columns = self.keys[part] + beside[:, None]
         first = np.minimum(np.searchsorted(self.keys, columns - 1), len(self.keys) - 1)
-        # of three voxels in a row, so many follow the first one that is not empty
+        # how many of three voxels in a row follow the first one that is not empty
         left = columns + 1 - self.keys[first]
         has_any = (left >= 0) & (left <= 2)
         ends = self.ends[np.clip(left, 0, 2) * len(self.keys) + first]

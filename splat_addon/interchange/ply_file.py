@@ -41,7 +41,7 @@ def vertex_count(path: str | os.PathLike) -> int:
 def vertex_portions(
     path: str | os.PathLike, most: int | None = None
 ) -> Iterator[tuple[dict[str, np.ndarray], tuple[str, ...]]]:
-    """The vertices as in `read_vertices`, but at most so many at a time; at least one portion, which may be empty. A
+    """The vertices as in `read_vertices`, but at most `most` at a time; at least one portion, which may be empty. A
     text file is a single portion.
     """
     size = os.path.getsize(path)

@@ -72,9 +72,9 @@ class Arrival:
                 return
 
     def _tried(self, scene: Scene, shown: Scene, camera: Camera, settings: Settings, hurries) -> Iterator[Shown]:
-        """What the refinement draws. While programs of that are missing, the last picture, or before there is one a
-        draft, of which the programs come first."""
-        # of a scene without anything, one would say that there is nothing
+        """What the refinement draws. While some of its programs are not compiled, this is the last picture instead, or
+        a draft if there is none yet. The draft's programs are compiled first."""
+        # The last picture of an empty scene would say that the scene is still empty.
         before = self._last if self._last and self._last[0].shown else None
         tries = not self.is_compiling or self._draft.is_there or before is not None
         if tries:

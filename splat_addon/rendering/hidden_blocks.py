@@ -10,10 +10,10 @@ from ..hierarchy.cuts import Boxes
 from .cover import Cover
 from .view import DrawItem
 
-#: Pixels beside a block's box in which a filter may show its splats.
+#: A filter may show a block's splats up to this many pixels beside the block's box.
 _BESIDE = 3
 
-#: By how much they may seem nearer there, in half the box's extent, which is a few radii.
+#: Filtered splats may seem nearer than the box by this many times half its longest edge, which is a few of their radii.
 _NEARER = 4
 
 
@@ -35,7 +35,7 @@ class BlocksFrontToBack:
         self.are_waiting = np.ones(len(self._rows), bool)
 
     def show_next(self, count: int) -> None:
-        """Draw the nearest of the blocks that wait, up to so many splats; those that face the viewer before others."""
+        """Draw the nearest of the blocks that wait, about `count` splats; those that face the viewer before others."""
         are_next = self.are_waiting & self._are_facing
         if not are_next.any():
             are_next = self.are_waiting.copy()

@@ -148,7 +148,7 @@ class Refinement:
         self._begun = None
 
     def _read(self, scene: Scene, camera: Camera, settings: Settings, most: int | None = None) -> Scene:
-        """The scene with the surfels that could be read in time, at most so many of them."""
+        """The scene with the surfels that could be read in time, at most `most` of them."""
         needs_whole = most is None and self._last is not None
         return self.renderer.streamed.resolved(scene, camera, settings, _READING, most=most, needs_whole=needs_whole)
 

@@ -115,8 +115,8 @@ def shadow_maps(
 def _needed(
     number, light, cameras: list[Camera], most: int, seen: list[Receivers], casters, corners, are_faces
 ) -> list[ShadowMap]:
-    """The maps of a light that a picture looks up, with as many texels as it needs, at most so many along a side. seen:
-    by each camera of the picture. casters, corners: as in `shadow_maps`."""
+    """The maps of a light that a picture looks up, with as many texels as it needs. most: texels along a side. seen: by
+    each camera of the picture. casters, corners: as in `shadow_maps`."""
     looks = [together([looked_up(c, one, spread_of(light, c)) for one in seen]) for c in cameras]
     if not any(looks):
         return []

@@ -19,8 +19,8 @@ from .scene import Scene
 from .scene.camera import Camera
 from .scene.light import MAX_SUN_HALF_ANGLE, Light
 
-#: A map has at least so many texels along the smallest pixel that looks it up, or as many as the settings allow. Where
-#: its size changes, shadows move by parts of a texel, an eighth of a pixel, which cannot be seen.
+#: A map has at least this many texels along the smallest pixel that looks it up, or as many as the settings allow.
+#: Where its size changes, shadows move by parts of a texel, an eighth of a pixel, which cannot be seen.
 TEXELS_PER_PIXEL = 8
 
 #: The part of a map that is drawn ends at multiples of this share of it, so that it stays while a camera moves.
@@ -36,7 +36,7 @@ NEAREST_SHARE = 0.25
 #: Half-axes of the ellipse that stands for a rectangle (shaders/features/shadows.glsl), over those of the rectangle.
 _ROUND = 1.13
 
-#: A position may be so many pixels beside the box of its object, because filters widen splats.
+#: A position may be this many pixels beside the box of its object, because filters widen splats.
 _BESIDE = 3
 
 
@@ -52,7 +52,11 @@ class Viewers(NamedTuple):
 
 
 def viewers(camera: Camera, moved: Camera) -> Viewers:
-    """Of one sample of a camera's picture, which is `moved`: through pixel centres, unless a lens moves the eye."""
+    """The viewers of one sample of a camera's picture.
+
+    moved: the camera of that sample. The maps of suns are fitted to it only if a lens moves the eye; otherwise all
+    samples share those of `camera`, which looks through the pixels' centres.
+    """
     return Viewers(moved if camera.lens else camera, (camera,))
 
 

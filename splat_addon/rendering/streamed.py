@@ -116,7 +116,7 @@ class _Coming:
         self.is_waiting = True
 
     def latest(self, view: Sight, beside: float | None, seconds: float, most: int | None, needs_whole: bool) -> Seen:
-        """What is there after waiting at most so many seconds. most, needs_whole: as in `Stream.ahead`."""
+        """What is there after waiting at most `seconds`. most, needs_whole: as in `Stream.ahead`."""
         key, until = (view.key, beside, most is None), perf_counter() + seconds
         while True:
             self._take(max(until - perf_counter(), 0.0))

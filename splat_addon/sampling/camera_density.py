@@ -17,7 +17,7 @@ from .mesh.triangle_mesh import TriangleMesh
 from .sample import sample_mesh
 
 #: Cells along the longest edge for the outline, and the maximum distance, in cells, from a surface point to the outline
-#: (up to 1.4 on the armadillo, facts/sampling.md section 5).
+#: (up to 1.4 on the armadillo).
 _OUTLINE_RESOLUTION = 96
 _OUTLINE_REACH = 1.5
 
@@ -57,6 +57,13 @@ def camera_spacing(
     """Spacing, object units, at which surfels are `pixels` apart in the picture where the surface is closest to the
     camera, and less elsewhere.
 
+    object_to_view: (4, 4) from object units to the camera's space, which looks down -Z.
+    window: left, right, bottom, top of the picture, as in `Camera`: on the plane at distance 1, or for an orthographic
+        camera in world units.
+    size: width and height of the picture in pixels. near: clip distance, world units.
+
+    Raises ValueError if `pixels` is not a finite number above 0, and NotSeenError if the camera does not see the
+    surface.
     """
     if not (np.isfinite(pixels) and pixels > 0):
         raise ValueError(f"The pixels a surfel covers must be a finite number above 0, not {pixels}.")

@@ -17,9 +17,9 @@ from ..hierarchy.ordering import morton_codes
 from ..surfels import Surfels
 from .layout import as_rows, row_type
 
-#: Every which surfel of the parts is in the sample that tells where to cut.
+#: One surfel in this many is in the sample that decides where to cut.
 _EVERY = 64
-#: Rows read from a run's file at most, in portions: places that many surfels share cannot be told apart.
+#: A run with more rows than this many portions is split: cuts cannot separate many surfels at one place.
 _LARGEST = 2
 
 

@@ -80,7 +80,7 @@ def _render_preview(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgra
         resources.renderer.release()
 
 
-#: A ball of a hundred pixels is smooth with so many.
+#: A ball of a hundred pixels is smooth with this many.
 _PREVIEW_SAMPLES = 4
 
 

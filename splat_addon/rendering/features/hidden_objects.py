@@ -27,8 +27,8 @@ INPUTS = {"covering_depth": lambda tile: tile.texture(tile.plan.facts["covering_
 #: For fewer objects or surfels than this, looking costs more than it may save.
 LEAST_OBJECTS, LEAST_SURFELS = 8, 200_000
 
-#: For fewer splats of one object than so many times the picture's samples, looking for hidden blocks costs more than it
-#: saves: so many show a single surface.
+#: If an object has fewer splats than this many times the picture's samples, looking for hidden blocks costs more than
+#: it saves: these splats show a single surface.
 LEAST_PER_SAMPLE = 3
 
 #: The shares of the splats after which it looks, as long as it finds any.
@@ -52,8 +52,8 @@ def passes(planning):
 
 
 def search(planning, seen: Texture, rows: int) -> Pass | None:
-    """The pass that finds how far each cell of the picture sees, if it may pay. seen: the depth that visibility writes,
-    with so many rows per row of samples."""
+    """The pass that finds how far each cell of the picture sees, if it may pay. seen: the depth that visibility writes.
+    rows: its number of rows per row of samples."""
     opaque = [instance for instance in planning.scene.surfels if not instance.is_transparent]
     if not may_hide(planning, opaque):
         planning.skip(

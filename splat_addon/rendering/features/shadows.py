@@ -19,8 +19,8 @@ from .drawing import LIT_HOSTS, SPLAT_HOSTS
 #: Offset of polygons, in texels of a map: a filter reaches two texels, over which planes at 45 degrees differ by this.
 SETBACK = 2.0
 
-#: Merged surfels may be off by as many texels as pixels; where at least 8 texels are along a pixel, by so many times
-#: more: they are still three times smaller than those of the picture.
+#: Merged surfels may be off by as many texels as pixels, and by this many times more where at least 8 texels are along
+#: a pixel: they are still three times smaller than those of the picture.
 COARSER = 8 / 3
 
 CONSTANTS = {"NEAREST_SHARE": NEAREST_SHARE}

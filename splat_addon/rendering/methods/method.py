@@ -18,15 +18,17 @@ class Method:
     """name: also of shaders/methods/<name>.glsl. label: for users. paper: its source.
     summary: what it gains and costs.
 
-    rasterizer: one of `RASTERIZERS`, of shaders/hosts, which splats are drawn by.
-    blurs_rims: its pixel filter blurs where a splat ends; others end sharply.
-    filters_silhouettes: a resolve pass filters them as the colours are.
-    culls_hidden: splats that lie behind all that is seen are found before they are drawn. The papers draw them, so do
-        their methods here.
-    sprites_hide: visibility too is of its sprites. Else it is of the exact ellipses.
-    writes_depth: at every pixel: the hardware's depth would differ from the one that the method corrects or clamps.
-    widens: its quads in space, past the exact ellipses that visibility is of, edge-on by any number of pixels.
-    pixel_variance: of its pixel filter, samples squared; 1/12 is that of a box. Textures are looked up under it.
+    rasterizer: how splats are drawn, a name in `RASTERIZERS`; its shaders are in shaders/hosts.
+    blurs_rims: the pixel filter blurs the rims of splats; without it they end sharply.
+    filters_silhouettes: a resolve pass filters silhouettes in the same way as colours.
+    culls_hidden: splats behind everything that is seen are found before they are drawn. The papers draw them, and so
+        do their methods here.
+    sprites_hide: the visibility pass draws the method's sprites; otherwise it draws the exact ellipses.
+    writes_depth: the shader writes the depth of every pixel, because the hardware's would differ from the one that the
+        method corrects or clamps.
+    widens: quads extend in space past the exact ellipses that the visibility pass draws; for splats seen edge-on, by
+        any number of pixels.
+    pixel_variance: variance of the pixel filter, samples squared; a box has 1/12. Textures are looked up under it.
     """
 
     name: str

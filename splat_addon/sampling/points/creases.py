@@ -28,16 +28,16 @@ CREASE_NEIGHBOURS = 32
 #: Points per batch: their temporaries stay in the processor's cache.
 _CHUNK = 1024
 
-#: Each plane needs at least so many points: one through three fits any noise.
+#: Each plane needs at least this many points: one through three fits any noise.
 _FEWEST = 4
 
 #: The points' root mean square distance from their planes, in spacings, beyond which there is noise instead of an edge.
 _ROUGHEST = 0.15
 
-#: Planes must fit so many times better than a quadric, and three planes so many times better than two.
+#: Planes must fit this many times better than a quadric, and three planes this many times better than two.
 _BETTER = 1.5
 
-#: Of the nearest so many neighbours, those within a spacing of a line must confirm it: this share of them or more must
+#: Of this many nearest neighbours, those within a spacing of a line must confirm it: at least this share of them must
 #: have a line of their own within this cosine of its direction. Bends have lines as well, but each another one.
 _CONFIRMING, _LEAST_CONFIRMED, _ALIKE = 16, 0.3, 0.9
 

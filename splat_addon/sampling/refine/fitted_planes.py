@@ -25,8 +25,8 @@ from .image_samples import SAME_SIDE, ImageSamples
 #: How far off a sample's plane neighbours may be, in cells.
 _FARTHEST = np.float32(0.9)
 
-#: How much the triangle's own plane counts: for the offset as much as so many neighbours, and for the tilt as much as
-#: so many at a distance of one cell.
+#: How much the triangle's own plane counts: for the offset as much as this many neighbours, and for the tilt as much as
+#: this many at a distance of one cell.
 _OWN_PLACE, _OWN_TILT = np.float32(1), np.float32(1)
 
 #: Weight of a neighbour in the next column or row, and of a diagonal one.

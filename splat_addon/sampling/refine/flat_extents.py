@@ -22,10 +22,10 @@ from ..mesh.triangle_mesh import TriangleMesh, corner_indices, corners_at
 from .flat_blocks import BLOCKS, LEAST_AREA
 from .flat_faces import flat_faces, may_be_wide
 
-#: So many triangles that may be in flat faces are looked at in half a second.
+#: Looking at this many triangles that may be in flat faces takes half a second.
 _MOST_TRIANGLES = 200_000
 
-#: Flat faces are looked for that have a block with so many cells along the mesh's longest edge.
+#: Flat faces are looked for that have a block with this many cells along the mesh's longest edge.
 _CELLS = 2048
 
 
