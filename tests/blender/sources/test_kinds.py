@@ -5,6 +5,7 @@ import bpy
 import numpy as np
 import pytest
 import trimesh
+from mathutils import Matrix
 
 SPACING = 0.05
 
@@ -179,6 +180,7 @@ def test_an_empty_collection_is_an_error_that_says_why(convert, select):
 
 def test_instances_of_no_size_are_left_out_and_counted(add_square, add_nodes, convert, capfd):
     square = add_square("Part")
+    square.data.transform(Matrix.Scale(10, 4))  # so that no cube touches another
 
     def build(tree, start, end):
         cube, place = tree.nodes.new("GeometryNodeMeshCube"), tree.nodes.new("GeometryNodeInstanceOnPoints")
