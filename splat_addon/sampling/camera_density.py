@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .density import grid_spacing
+from .density import grid_spacing, mean_width
 from .mesh.cleaning import drop_unusable
 from .mesh.triangle_mesh import TriangleMesh
 from .sample import sample_mesh
@@ -28,20 +28,22 @@ class NotSeenError(ValueError):
 
 @dataclass(frozen=True, eq=False)
 class Outline:
-    """(n, 3) points, object units; every point of the surface lies within `reach` of one of them."""
+    """(n, 3) points, object units; every point of the surface lies within `reach` of one of them. width: `mean_width`
+    of the mesh."""
 
     points: np.ndarray
     reach: float
+    width: float
 
 
 def outline(mesh: TriangleMesh) -> Outline:
     """The outline of the usable triangles; without points if there are none."""
     mesh, _ = drop_unusable(mesh)
     if not len(mesh):
-        return Outline(np.zeros((0, 3)), 0.0)
+        return Outline(np.zeros((0, 3)), 0.0, 0.0)
     spacing = grid_spacing(mesh, resolution=_OUTLINE_RESOLUTION)
     surfels = sample_mesh(mesh, spacing=spacing)
-    return Outline(surfels.origin + surfels.positions, _OUTLINE_REACH * spacing)
+    return Outline(surfels.origin + surfels.positions, _OUTLINE_REACH * spacing, mean_width(mesh))
 
 
 def camera_spacing(

@@ -8,10 +8,13 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from .ldc.grid import longest_edge
 from .ldc.reductions import projected_area
 from .mesh.cleaning import drop_unusable
-from .mesh.triangle_mesh import TriangleMesh
+from .mesh.survey import signed_volumes
+from .mesh.triangle_mesh import TriangleMesh, corner_indices, corners_at, doubled_areas
 from .options import Density
 
 
@@ -37,6 +40,19 @@ def spacing_of(mesh: TriangleMesh, density: Density) -> float:
     if density.count is not None:
         return math.sqrt(projected_area(mesh, density.reduction, density.grazing_angle) / density.count)
     return longest_edge(mesh) / density.resolution
+
+
+def mean_width(mesh: TriangleMesh) -> float:
+    """Four times the volume of a mesh by its area, object units: the diameter of a long cylinder, and twice the
+    thickness of a plate. Of an open mesh, the volume between it and the mean of its corners counts, which is two thirds
+    of a tube's and 0 for a flat sheet. A mesh without area has no width.
+    """
+    if not len(mesh):
+        return 0.0
+    positions = mesh.positions - mesh.positions[mesh.triangles.ravel()].mean(axis=0)
+    doubled = doubled_areas(corners_at(positions.T, corner_indices(mesh.triangles)))
+    area = float(np.sqrt((doubled * doubled).sum(axis=0)).sum()) / 2
+    return 4 * abs(float(signed_volumes(positions, mesh.triangles).sum())) / 6 / area if area else 0.0
 
 
 def predict_count(mesh: TriangleMesh, **density) -> int:

@@ -3,6 +3,7 @@
 
 import bpy
 import pytest
+from mathutils import Matrix
 
 from splat_addon.blender.conversion import automatic_density, prediction
 from splat_addon.blender.conversion.mesh_conversion import Choices, prepare, sample
@@ -62,6 +63,23 @@ def test_a_thing_on_the_horizon_keeps_a_few_cells(cube, camera):
     camera.data.clip_end = 1e6
     found = prepared(cube)
     assert found.spacing == pytest.approx(2 / automatic_density.LEAST_RESOLUTION) and "far away" in found.reason
+
+
+def test_a_wire_has_surfels_across_its_width(cube, camera):
+    plain = prepared(cube).spacing
+    cube.data.transform(Matrix.Diagonal((plain, plain, 1, 1)))  # twice as wide as surfels are apart
+    found = prepared(cube)
+    assert found.spacing == pytest.approx(plain / 2, rel=0.05)
+    assert found.reason == "2.0 times finer, as it is thin, than 1 pixels where the camera is nearest"
+    cube.data.transform(Matrix.Diagonal((0.01, 0.01, 1, 1)))
+    assert prepared(cube).reason == "1 pixels where the camera is nearest"
+
+
+def test_a_thin_shell_has_no_more_surfels_than_a_wire_may_have(cube, camera, monkeypatch):
+    plain = prepared(cube).spacing
+    cube.data.transform(Matrix.Diagonal((1, 1, 0.2 * plain, 1)))
+    monkeypatch.setattr(automatic_density, "MOST_OF_WIRES", round(8 / plain**2))
+    assert prepared(cube).spacing == pytest.approx(plain, rel=0.05)
 
 
 def test_the_ceiling_is_named_when_it_applies(cube, camera, monkeypatch):

@@ -6,8 +6,10 @@ from functools import partial
 
 import numpy as np
 import pytest
+import trimesh
 
 from splat_addon.sampling import TriangleMesh, predict_count, projected_area, sample_mesh
+from splat_addon.sampling.density import mean_width
 from splat_addon.sampling.ldc.depth_cube import depth_cube
 from splat_addon.sampling.ldc.grid import Grid
 from splat_addon.sampling.ldc.reductions import keep_dominant
@@ -29,6 +31,19 @@ def test_each_face_of_a_cube_gets_one_sample_a_cell_wherever_the_grid_starts(cub
 
 def test_each_face_of_a_cube_gets_one_surfel_a_cell(cube):
     assert len(sample_mesh(cube(), resolution=32)) == 6 * 32**2
+
+
+def test_the_mean_width_is_that_of_closed_forms(cube, square):
+    def width(shape):
+        return mean_width(TriangleMesh(np.add(shape.vertices, (5, 3, 1)), np.asarray(shape.faces)))
+
+    wire = trimesh.creation.cylinder(radius=0.01, height=4, sections=64)
+    assert width(wire) == pytest.approx(0.02, rel=0.01)
+    tube = trimesh.Trimesh(wire.vertices, wire.faces[np.abs(wire.face_normals[:, 2]) < 0.5], process=False)
+    assert width(tube) == pytest.approx(0.02 * 2 / 3, rel=0.02)
+    assert width(trimesh.creation.box(extents=(1, 1, 1e-3))) == pytest.approx(2e-3, rel=0.01)
+    assert width(trimesh.creation.icosphere(subdivisions=4)) == pytest.approx(4 / 3, rel=0.01)
+    assert mean_width(square()) < 1e-12 and mean_width(TriangleMesh(np.zeros((0, 3)), np.zeros((0, 3), int))) == 0
 
 
 def test_a_sphere_has_the_count_of_the_closed_form(sphere):

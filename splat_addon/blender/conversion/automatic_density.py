@@ -23,6 +23,12 @@ FALLBACK_RESOLUTION, LEAST_RESOLUTION = 256, 16
 #: Maximum number of surfels per object: 0.6 GB during conversion. For more, users choose another density.
 MOST_SURFELS = 4_000_000
 
+#: Surfels across the width of a wire, so that splats do not stick out of it, and how many it may have for that at most.
+ACROSS_WIRES, MOST_OF_WIRES = 4, 100_000
+
+#: The most by which surfels are closer together for that. Wires too thin even then stay as they are.
+FINEST_OF_WIRES = 8
+
 #: A moving object may come this much closer before its surfels are farther apart than requested.
 MOTION_MARGIN = 1.25
 
@@ -71,11 +77,23 @@ def automatic_spacing(
     coarsest = longest_edge / LEAST_RESOLUTION
     if spacing > coarsest:
         spacing, reason = coarsest, f"resolution {LEAST_RESOLUTION}, the least, as the camera is far away"
+    of_wire = _of_wire(spacing, surface().width, area)
+    if of_wire < spacing:
+        reason = f"{spacing / of_wire:.1f} times finer, as it is thin, than {reason}"
+        spacing = of_wire
     finest = _finest(spacing, area, saved)
     if spacing < finest:
         reason = f"at most {MOST_SURFELS:,} surfels, {finest / spacing:.1f} times coarser than {reason}"
         spacing = finest
     return Automatic(spacing, reason)
+
+
+def _of_wire(wanted: float, width: float, area: float) -> float:
+    """The spacing for the mean width of an object, or the wanted one if that serves or too many would be needed."""
+    finest = wanted / FINEST_OF_WIRES
+    if width < finest:
+        return wanted
+    return min(max(width / ACROSS_WIRES, finest, math.sqrt(area / MOST_OF_WIRES)), wanted)
 
 
 def _finest(wanted: float, area: float, saved: Callable[[float], float]) -> float:

@@ -58,7 +58,7 @@ class Extent:
 
 
 #: The extent of an object that cannot be converted.
-NOTHING = Extent(0.0, 0.0, Outline(np.zeros((0, 3)), 0.0))
+NOTHING = Extent(0.0, 0.0, Outline(np.zeros((0, 3)), 0.0, 0.0))
 
 #: kind of density -> spacing from the extent and a value above 0
 _SPACINGS = {
