@@ -15,6 +15,7 @@ import bpy
 from mathutils import Matrix
 
 from ...sampling import NotSeenError, Outline
+from .animation import is_moving
 from .camera_density import without_camera
 
 #: Cells along the longest edge if no camera sees the object, and the minimum if a camera sees it from afar.
@@ -110,18 +111,6 @@ def _finest(wanted: float, area: float, saved: Callable[[float], float]) -> floa
         middle = math.sqrt(low * high)
         low, high = (middle, high) if are_too_many(middle) else (low, middle)
     return high
-
-
-def is_moving(source: bpy.types.Object | None) -> bool:
-    """Whether an object or one of its parents has animation, drivers, constraints or a rigid body."""
-    while source is not None:
-        animation = source.animation_data
-        if animation is not None and (animation.action or animation.drivers or animation.nla_tracks):
-            return True
-        if len(source.constraints) or source.rigid_body is not None:
-            return True
-        source = source.parent
-    return False
 
 
 def _by_resolution(longest_edge: float, detail: float, why: str) -> tuple[float, str]:

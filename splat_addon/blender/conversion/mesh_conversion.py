@@ -40,8 +40,8 @@ from ..materials.baking import Bakeable, baked
 from ..materials.material_surfaces import Unread
 from .automatic_density import automatic_spacing
 from .camera_density import without_camera
+from .changing_shape import is_deformed
 from .gathering import gather
-from .shape_following import is_deformed
 from .surfel_objects import add_surfel_object, collections_of, render_like
 
 #: How far the surface may be above or below its surfel, in spacings: because of curvature within the cell, or a move to

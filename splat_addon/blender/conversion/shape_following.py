@@ -17,12 +17,9 @@ from ...surfels import Surfels
 from ..geometry.node_groups import known_group, new_modifier_group, uses_group
 from ..geometry.node_maths import Maths, enabled
 from ..ids import POINT_ATTRIBUTES, REST, SHAPE_GROUP
-
-#: Modifiers that move vertices from frame to frame.
-_DEFORMING = frozenset(
-    "ARMATURE CAST CLOTH CORRECTIVE_SMOOTH CURVE DISPLACE HOOK LAPLACIANDEFORM LATTICE MESH_CACHE MESH_DEFORM "
-    "MESH_SEQUENCE_CACHE NODES SHRINKWRAP SIMPLE_DEFORM SMOOTH SOFT_BODY SURFACE_DEFORM WARP WAVE".split()
-)
+from .changing_shape import is_deformed, rebuilt_by
+from .following import follows
+from .source_record import record_of, sources_of
 
 _VERTICES = ("surfel_vertex_a", "surfel_vertex_b", "surfel_vertex_c")
 _PLACE, _ALONG_X, _ALONG_Y, _NORMAL = (f"surfel_bound_{name}" for name in ("place", "x", "y", "normal"))
@@ -37,12 +34,6 @@ _LEAST_SHRINKING = 1e-3
 _ROUNDING = 1e-5
 
 
-def is_deformed(source: bpy.types.Object) -> bool:
-    """Whether an object's vertices may move from frame to frame."""
-    has_keys = getattr(source.data, "shape_keys", None) is not None
-    return has_keys or source.parent_type == "ARMATURE" or any(m.type in _DEFORMING for m in source.modifiers)
-
-
 def follow_shape(made: bpy.types.Object, conversion, depsgraph: bpy.types.Depsgraph) -> str | None:
     """Bind the surfels of `made` to the single source that they were made from, if it is deformed.
 
@@ -50,7 +41,11 @@ def follow_shape(made: bpy.types.Object, conversion, depsgraph: bpy.types.Depsgr
     """
     [source, *others] = conversion.sources
     _unbind(made)
-    if others or not is_deformed(source):
+    if others:
+        return None
+    if why := _why_never(source):
+        return why
+    if not is_deformed(source):
         return None
     surfels, mesh = conversion.surfels, conversion.mesh
     if source.type != "MESH" or not _is_own_mesh(source, mesh, depsgraph):
@@ -68,6 +63,37 @@ def follow_shape(made: bpy.types.Object, conversion, depsgraph: bpy.types.Depsgr
     return None
 
 
+#: What to do about a source whose vertices do not stay the same.
+_INSTEAD = "delete the surfels and draw the object with Render as > Surfels in its object properties"
+
+
+def _why_never(source: bpy.types.Object) -> str | None:
+    """The end of a sentence about a source that no surfels can be bound to."""
+    name = rebuilt_by(source)
+    return name and f"its modifier {name!r} makes other faces from frame to frame; {_INSTEAD}"
+
+
+def not_bent(made: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> str | None:
+    """A sentence about a surfel object in the file that does not follow its source's shape, as evaluated now."""
+    sources = sources_of(made) if record_of(made).kind == "MESH" else []
+    if len(sources) != 1 or not follows(made, sources[0]):
+        return None
+    [source] = sources
+    modifier = next(filter(_is_ours, made.modifiers), None)
+    if modifier is None:
+        why = _why_never(source)
+        return why and f"What bends {source.name!r} does not bend its surfels: {why}"
+    if not (modifier.show_render if depsgraph.mode == "RENDER" else modifier.show_viewport):
+        return None
+    count, bound = len(source.evaluated_get(depsgraph).data.vertices), _given(modifier, "Vertices")
+    if count == bound:
+        return None
+    return (
+        f"What bends {source.name!r} does not bend its surfels now: it has {count:,} vertices and had {bound:,} when "
+        f"it was converted; update the surfels, or {_INSTEAD}"
+    )
+
+
 def is_bent(made: bpy.types.Object) -> bool:
     """Whether the surfels of an object follow the deformation of a source."""
     return any(uses_group(modifier, _MAKE) for modifier in made.modifiers)
@@ -83,10 +109,22 @@ def _pinned(made: bpy.types.Object) -> int:
     return sum(modifier.use_pin_to_last for modifier in made.modifiers)
 
 
+def _given(modifier: bpy.types.NodesModifier, name: str):
+    """The value of an input of the modifier's node group."""
+    identifier = _identifier(modifier, name)
+    if hasattr(modifier, "properties"):
+        return getattr(modifier.properties.inputs, identifier).value
+    return modifier[identifier]
+
+
+def _identifier(modifier: bpy.types.NodesModifier, name: str) -> str:
+    items = modifier.node_group.interface.items_tree
+    return next(item.identifier for item in items if item.name == name and item.in_out == "INPUT")
+
+
 def _give(modifier: bpy.types.NodesModifier, name: str, value) -> None:
     """Set an input of the modifier's node group."""
-    items = modifier.node_group.interface.items_tree
-    identifier = next(item.identifier for item in items if item.name == name and item.in_out == "INPUT")
+    identifier = _identifier(modifier, name)
     if hasattr(modifier, "properties"):
         getattr(modifier.properties.inputs, identifier).value = value
     else:

@@ -17,6 +17,7 @@ from ...rendering import Instance, Light, Scene
 from ...rendering.levels import replaced
 from ...streaming import Stream
 from ...surfels import Surfels
+from ..conversion.shape_following import not_bent
 from ..conversion.source_record import is_stood_in, sources_in
 from ..geometry.attributes import Points, has_surfels, has_surfels_beside_faces, have_same_values, read_stored
 from ..geometry.gaussian_clouds import is_gaussian_cloud
@@ -136,7 +137,7 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
     for sentence in passed_over.of_scene(bpy_scene):
         notes.add(sentence)
     stood_in = sources_in(bpy_scene.original)
-    surfels, (lights, light_sets) = [], _lights(depsgraph, notes)
+    surfels, made, (lights, light_sets) = [], set(), _lights(depsgraph, notes)
     for entry in depsgraph.object_instances:
         object_, matrix = entry.object, np.array(entry.matrix_world, np.float64)
         if not entry.show_self or not (view_layer.use_solid and _is_seen(entry, depsgraph, notes)):
@@ -156,6 +157,8 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
                 if stream is not None:
                     surfels += _streamed(object_, stream, depsgraph, matrix, fields, store, notes, override)
                     continue
+                if {"surfels", "shown"} & {*what}:
+                    made.add(object_.original)
                 if "surfels" in what:
                     with _attributes_of(object_) as points:
                         kept = store.get(points, points.session_uid, points.name_full)
@@ -174,6 +177,8 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
                 notes.add(_not_drawn(object_))
         except ValueError as error:
             notes.leave_out(object_.name, error)
+    for sentence in sorted(filter(None, (not_bent(each, depsgraph) for each in made))):
+        notes.add(sentence)
     sampled, polygons = live_meshes.instances(
         depsgraph, density_of_meshes(bpy_scene), are_meshes_texture_mapped(bpy_scene), notes
     )

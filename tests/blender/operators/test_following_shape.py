@@ -170,3 +170,110 @@ def test_other_levels_in_the_viewport_are_named(sheet, convert, capfd, bent_surf
     (made,) = convert(density="RESOLUTION", resolution=16)
     assert "Warning: The surfels are bent in renders only: Fine has other levels" in capfd.readouterr().out
     assert len(bent_surfels(made))
+
+
+def add_cutter():
+    bpy.ops.mesh.primitive_cube_add(size=0.4)
+    return bpy.context.object
+
+
+def move(owner, path="location"):
+    owner.keyframe_insert(path, frame=1)
+    owner.keyframe_insert(path, frame=20)
+
+
+def stand_still(sheet, cutter):
+    """Everything has a modifier, and nothing changes: the cutter moves with the sheet."""
+    sheet.modifiers.new("hole", "BOOLEAN").object = cutter
+    sheet.modifiers.new("coarse", "DECIMATE")
+    cutter.parent = sheet
+    move(sheet)
+    move(sheet, "hide_viewport")
+
+
+def move_the_cutter(sheet, cutter):
+    sheet.modifiers.new("other faces", "BOOLEAN").object = cutter
+    move(cutter)
+
+
+def move_the_sheet(sheet, cutter):
+    sheet.modifiers.new("other faces", "BOOLEAN").object = cutter
+    move(sheet)
+
+
+def bend_the_cutter(sheet, cutter):
+    modifier = sheet.modifiers.new("other faces", "BOOLEAN")
+    modifier.operand_type, modifier.collection = "COLLECTION", bpy.data.collections.new("cutters")
+    modifier.collection.objects.link(cutter)
+    cutter.shape_key_add(name="Basis")
+    move(cutter.shape_key_add(name="Bent"), "value")
+
+
+def count_up(sheet, cutter):
+    move(sheet.modifiers.new("other faces", "ARRAY"), "count")
+
+
+def make_coarser(sheet, cutter):
+    modifier = sheet.modifiers.new("other faces", "DECIMATE")
+    modifier.driver_add("ratio").driver.expression = "frame / 20"
+
+
+def build_up(sheet, cutter):
+    sheet.modifiers.new("other faces", "BUILD")
+
+
+@pytest.mark.parametrize(
+    "change", [move_the_cutter, move_the_sheet, bend_the_cutter, count_up, make_coarser, build_up, stand_still]
+)
+def test_modifiers_that_make_other_faces_are_named(change, sheet, convert, capfd):
+    cutter = add_cutter()
+    change(sheet, cutter)
+    cutter.select_set(False)
+    sheet.select_set(True)
+    bpy.context.view_layer.objects.active = sheet
+    bpy.context.scene.frame_set(19)
+    (made,) = convert(density="RESOLUTION", resolution=16)
+    assert [modifier.name for modifier in made.modifiers] == ["Surfels as Points"]
+    expected = "Warning: What bends 'Sheet' does not bend its surfels: its modifier 'other faces' makes other faces"
+    assert (expected in capfd.readouterr().out) == (change is not stand_still)
+
+
+def test_an_animated_thickness_is_followed(sheet, convert, bent_surfels):
+    modifier = sheet.modifiers.new("thick", "SOLIDIFY")
+    modifier.offset, modifier.thickness = 0, 0.1
+    move(modifier, "thickness")
+    (made,) = convert(density="RESOLUTION", resolution=16)
+    sheet.animation_data_clear()
+    modifier.thickness = 0.3
+    assert np.ptp(bent_surfels(made).positions[:, 2]) == pytest.approx(0.3)
+
+
+def notes_of_a_render():
+    store, live = SurfelStore(), LiveMeshes()
+    store.begin_frame()
+    live.begin_frame()
+    return export_scene(bpy.context.evaluated_depsgraph_get(), store, live)[1].sentences()
+
+
+@pytest.mark.parametrize("source", ["KEEP", "HIDE"])
+def test_a_render_names_a_source_that_has_other_vertices_now(source, sheet, convert):
+    add_keys(sheet)
+    modifier = sheet.modifiers.new("levels", "SUBSURF")
+    modifier.levels = modifier.render_levels = 0
+    (made,) = convert(density="RESOLUTION", resolution=16, source=source)
+    assert notes_of_a_render() == []
+    modifier.levels = 1
+    expected = "What bends 'Sheet' does not bend its surfels now: it has 289 vertices and had 81"
+    assert [note[: len(expected)] for note in notes_of_a_render()] == [expected]
+    made.modifiers["Follow Shape"].show_viewport = False
+    assert notes_of_a_render() == []
+
+
+@pytest.mark.parametrize("follow", [True, False])
+def test_a_render_names_a_modifier_that_makes_other_faces(follow, sheet, convert):
+    """It is named also if it was animated after the conversion, but not for a frozen copy."""
+    convert(density="RESOLUTION", resolution=16, follow=follow)
+    assert notes_of_a_render() == []
+    make_coarser(sheet, None)
+    start = "What bends 'Sheet' does not bend its surfels: its modifier 'other faces' makes other faces"
+    assert [note.startswith(start) for note in notes_of_a_render()] == [True] * follow

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Finds what changes an object's shape from frame to frame: it moves vertices, or it makes others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import bpy
+
+from .animation import animated_paths, is_animated, moves_against
+
+#: Modifiers that move vertices from frame to frame.
+_DEFORMING = frozenset(
+    "ARMATURE CAST CLOTH CORRECTIVE_SMOOTH CURVE DISPLACE HOOK LAPLACIANDEFORM LATTICE MESH_CACHE MESH_DEFORM "
+    "MESH_SEQUENCE_CACHE NODES SHRINKWRAP SIMPLE_DEFORM SMOOTH SOFT_BODY SURFACE_DEFORM WARP WAVE".split()
+)
+
+#: Modifiers that only move vertices if their settings, or objects that they use, change.
+_DEFORMING_IF_CHANGED = frozenset("BEVEL LAPLACIANSMOOTH MIRROR OCEAN SCREW SOLIDIFY WIREFRAME".split())
+
+#: Modifiers that make other vertices if their settings, or objects that they use, change.
+_REBUILDING_IF_CHANGED = frozenset(
+    "ARRAY BOOLEAN DECIMATE EDGE_SPLIT MASK MULTIRES REMESH SKIN SUBSURF TRIANGULATE VOLUME_TO_MESH WELD".split()
+)
+
+#: Modifiers that make other vertices as time passes.
+_REBUILDING = frozenset({"BUILD", "EXPLODE", "PARTICLE_INSTANCE"})
+
+
+def is_deformed(source: bpy.types.Object) -> bool:
+    """Whether an object's vertices may move from frame to frame."""
+    has_keys = getattr(source.data, "shape_keys", None) is not None
+    return has_keys or source.parent_type == "ARMATURE" or any(_deforms(m, source) for m in source.modifiers)
+
+
+def rebuilt_by(source: bpy.types.Object) -> str | None:
+    """The name of a modifier that gives an object other vertices from frame to frame, or None."""
+    return next((m.name for m in source.modifiers if _rebuilds(m, source)), None)
+
+
+def _deforms(modifier: bpy.types.Modifier, source: bpy.types.Object) -> bool:
+    return modifier.type in _DEFORMING or (modifier.type in _DEFORMING_IF_CHANGED and _changes(modifier, source))
+
+
+def _rebuilds(modifier: bpy.types.Modifier, source: bpy.types.Object) -> bool:
+    if modifier.type == "FLUID":
+        return modifier.show_render and modifier.fluid_type == "DOMAIN"
+    if modifier.type in _REBUILDING:
+        return modifier.show_render
+    return modifier.type in _REBUILDING_IF_CHANGED and _changes(modifier, source)
+
+
+def _changes(modifier: bpy.types.Modifier, source: bpy.types.Object) -> bool:
+    """Whether a modifier's settings are animated, or an object that it uses moves against the source or is animated
+    itself."""
+    settings = f'modifiers["{bpy.utils.escape_identifier(modifier.name)}"]'
+    if any(path.startswith(settings) for path in animated_paths(source)):
+        return True
+    return modifier.show_render and any(_changes_for(used, source) for used in _used_by(modifier))
+
+
+def _changes_for(used: bpy.types.Object, source: bpy.types.Object) -> bool:
+    shapes = used.data, getattr(used.data, "shape_keys", None)
+    helpers = (helper for modifier in used.modifiers for helper in _used_by(modifier))
+    return moves_against(used, source) or any(map(is_animated, (*shapes, *helpers)))
+
+
+def _used_by(modifier: bpy.types.Modifier) -> Iterator[bpy.types.Object]:
+    """The objects that a modifier refers to, alone or in a collection."""
+    for each in modifier.bl_rna.properties:
+        used = getattr(modifier, each.identifier) if each.type == "POINTER" else None
+        if isinstance(used, bpy.types.Object):
+            yield used
+        elif isinstance(used, bpy.types.Collection):
+            yield from used.all_objects
