@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes surfels follow their source: as its child, with its parent, animation and constraints."""
+"""Makes surfels follow their source: as its child, with its parent, animation and constraints, and with its
+animated visibility."""
 
 from __future__ import annotations
 
@@ -10,6 +11,7 @@ import numpy as np
 from mathutils import Matrix
 
 from ...surfels import Surfels
+from .animation import animated_paths
 
 #: The error in a surfel's position that is acceptable, as a share of the smaller half-axis of the median surfel; nobody
 #: sees it.
@@ -20,6 +22,9 @@ _ROUNDING = 2.0**-24
 
 #: Kinds of instancing that place children on the vertices or faces of their parent.
 _REPEATING = ("VERTS", "FACES")
+
+#: Properties of an object's visibility that can be animated.
+_VISIBILITY = frozenset({"hide_viewport", "hide_render"})
 
 
 def at_origin_of_source(surfels: Surfels) -> Surfels:
@@ -52,6 +57,27 @@ def follow(made: bpy.types.Object, source: bpy.types.Object, matrix_world: Matri
     else:
         made.parent = source
         made.matrix_parent_inverse = inverse
+
+
+def follow_visibility(made: bpy.types.Object, sources: list[bpy.types.Object]) -> list[str]:
+    """Hide a surfel object whenever its source is hidden, if that is animated. Returns a sentence for each source that
+    it does not follow.
+
+    A driver does so: it reads the source's animation, even if the conversion hid the source.
+    """
+    animated = {source: set(animated_paths(source)) & _VISIBILITY for source in sources}
+    if len(sources) > 1:
+        return [
+            f"When {source.name!r} is hidden, its joined surfels stay visible; convert it alone if they must follow it"
+            for source, paths in animated.items()
+            if paths
+        ]
+    for path in animated[sources[0]].difference(animated_paths(made)):
+        driver = made.driver_add(path).driver
+        driver.type = "SUM"
+        target = driver.variables.new().targets[0]
+        target.id, target.data_path = sources[0], path
+    return []
 
 
 def follows(made: bpy.types.Object, source: bpy.types.Object) -> bool:

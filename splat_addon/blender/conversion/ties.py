@@ -11,7 +11,7 @@ from ..geometry.mesh_extraction import is_unread
 from ..ids import OBJECT_SETTINGS
 from .as_rendered import as_rendered, differing_levels
 from .bring_back import hide_source
-from .following import follow
+from .following import follow, follow_visibility
 from .shape_following import follow_shape, is_bent
 from .source_record import keep_record, record_of
 
@@ -32,7 +32,7 @@ def tie(conversion, made: bpy.types.Object, kind: str, settings, follows: bool, 
         matrix_world = conversion.matrix_world @ Matrix.Translation(conversion.surfels.origin)
         unit = float(np.median(conversion.surfels.scales)) * min(map(abs, matrix_world.to_scale()))
         follow(made, conversion.sources[0], matrix_world, unit)
-        notes = tie_shape(conversion, made, kind)
+        notes = [*follow_visibility(made, conversion.sources), *tie_shape(conversion, made, kind)]
     for source in conversion.sources:
         # an earlier choice about how to render the source must not show it beside its surfels
         getattr(source, OBJECT_SETTINGS).render_as = "SCENE"

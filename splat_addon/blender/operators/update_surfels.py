@@ -7,7 +7,7 @@ import bpy
 from bpy.props import BoolProperty
 
 from ..conversion.batch import Batch, ConversionBatch
-from ..conversion.following import follows
+from ..conversion.following import follow_visibility, follows
 from ..conversion.mesh_settings import choices
 from ..conversion.points_conversion import PointsBatch
 from ..conversion.points_settings import keywords, viewpoint
@@ -67,7 +67,8 @@ class OBJECT_OT_surfels_update(bpy.types.Operator):
         for conversion in replaced:
             keep_unread(made, conversion)
             if follows(made, conversion.sources[0]):
-                for note in tie_shape(conversion, made, record_of(made).kind):
+                shape = tie_shape(conversion, made, record_of(made).kind)
+                for note in (*follow_visibility(made, conversion.sources), *shape):
                     self.report({"WARNING"}, note)
             self.report({"INFO"}, f"{made.name}: {conversion.summary()}")
             for note in conversion.notes:

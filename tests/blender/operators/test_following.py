@@ -77,6 +77,47 @@ def test_a_frozen_copy_stays(square, convert, world_positions):
     assert np.array_equal(world_positions(made), before)
 
 
+def hide_first(source):
+    for frame, is_hidden in ((1, True), (10, False)):
+        for path in ("hide_render", "hide_viewport"):
+            setattr(source, path, is_hidden)
+            source.keyframe_insert(path, frame=frame)
+
+
+@pytest.mark.parametrize("source", ["KEEP", "HIDE"])
+@pytest.mark.parametrize("is_animated", ["before", "after"])
+def test_they_are_hidden_when_their_source_is(is_animated, source, square, convert):
+    if is_animated == "before":
+        hide_first(square)
+    (made,) = convert(resolution=8, source=source)
+    if is_animated == "after":
+        hide_first(square)
+        update(made)
+        update(made)
+    seen = {}
+    for frame in (1, 9, 10):
+        bpy.context.scene.frame_set(frame)
+        seen[frame] = not made.hide_render and not made.hide_viewport
+    assert seen == {1: False, 9: False, 10: True}
+
+
+def test_a_frozen_copy_is_not_hidden(square, convert):
+    hide_first(square)
+    (made,) = convert(resolution=8, follow=False)
+    bpy.context.scene.frame_set(1)
+    assert not made.hide_render
+
+
+def test_joined_surfels_are_not_hidden_with_one_of_their_sources(square, add_square, convert, capfd):
+    hide_first(square)
+    add_square("Other")
+    square.select_set(True)
+    (made,) = convert(resolution=8, join=True)
+    bpy.context.scene.frame_set(1)
+    assert not made.hide_render
+    assert "Warning: When 'Square' is hidden, its joined surfels stay visible" in capfd.readouterr().out
+
+
 def test_without_their_source_they_stay(square, convert, world_positions):
     square.location = (1, 2, 3)
     bpy.context.view_layer.update()
