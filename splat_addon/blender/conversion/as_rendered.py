@@ -58,6 +58,7 @@ def differing_levels(owner: bpy.types.Object) -> str | None:
 def _settings(owner: bpy.types.Object) -> Iterator[tuple[object, str, object]]:
     """An object's viewport settings, with the values they have in a render."""
     yield owner, "hide_viewport", owner.hide_viewport and owner.hide_render
+    yield owner, "show_instancer_for_viewport", owner.show_instancer_for_render
     for modifier in owner.modifiers:
         yield modifier, "show_viewport", modifier.show_render
         if modifier.type in _MODIFIERS:

@@ -180,4 +180,6 @@ def why_nothing(source: bpy.types.Object, shown: Shown, points: int) -> str:
         return "The collection that it shows has no surfaces in it; put a mesh there."
     if source.type in _SURFACES_BY_MODIFIERS:
         return "Its modifiers make no mesh, so there is no surface to sample; let them make one."
+    if not shown.pieces and not source.show_instancer_for_render:
+        return "It shows no instances, and renders do not show its own mesh; switch Show Instancer > Render on."
     return f"The mesh {'has no faces' if points else 'is empty'}, so there is no surface to sample; add faces first."

@@ -125,6 +125,26 @@ def test_instances_on_vertices(assert_covers, add_mesh, select):
     assert_covers()
 
 
+@pytest.mark.parametrize("is_shown", [True, False])
+def test_an_instancer_is_sampled_if_renders_show_it(is_shown, add_square, cube, world_surfels, convert, select):
+    square = add_square()
+    square.instance_type, square.show_instancer_for_render = "FACES", is_shown
+    square.show_instancer_for_viewport = not is_shown
+    cube.parent, cube.scale = square, (0.01, 0.01, 0.01)
+    select(square)
+    (made,) = convert(density="RESOLUTION", resolution=16)
+    reach = np.abs(world_surfels(made)[0][:, :2] - 0.5).max()
+    assert reach > 0.4 if is_shown else reach < 0.2
+    assert square.show_instancer_for_viewport != is_shown
+
+
+def test_an_instancer_that_shows_nothing_is_an_error_that_says_why(add_square, convert, select):
+    square = add_square()
+    square.instance_type, square.show_instancer_for_render = "FACES", False
+    with pytest.raises(RuntimeError, match="switch Show Instancer > Render on"):
+        convert()
+
+
 def test_a_family_of_metaballs_is_converted_once(convert, capfd):
     add_metaballs()
     made = convert(resolution=32)
