@@ -229,8 +229,8 @@ def _lights(depsgraph: bpy.types.Depsgraph, notes: Notes) -> tuple[list[Light], 
 _NO_FORM = Form("HIDDEN")
 
 #: Blender's type -> its name, for things that other engines show and that are not meshes. Curves and texts arrive as
-#: meshes.
-_NOT_DRAWN = {"POINTCLOUD": "point cloud", "CURVES": "hair curves", "VOLUME": "volume", "GREASEPENCIL": "grease pencil"}
+#: meshes, and Blender itself draws grease pencil over the picture of any engine.
+_NOT_DRAWN = {"POINTCLOUD": "point cloud", "CURVES": "hair curves", "VOLUME": "volume"}
 
 
 #: What can be converted besides, and where.

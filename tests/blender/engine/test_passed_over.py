@@ -227,7 +227,7 @@ WALKED = {
          "pass_alpha_threshold", "pass_cryptomatte_depth", *(p.flag for p in RENDER_PASSES if p.flag),
          "use_pass_cryptomatte_object", "use_pass_combined", "use_pass_cryptomatte_accurate"},
         {p for p in bpy.types.ViewLayer.bl_rna.properties.keys() if p.startswith("use_pass_")},
-        # hair, volumes, grease pencil and Freestyle are named where they are; the rest chooses a line of a list
+        # hair, volumes and Freestyle are named where they are; Blender draws grease pencil; the rest chooses a line
         {"use_strand", "use_volumes", "use_freestyle", "use_grease_pencil", "use_ao", "active_aov_index",
          "active_lightgroup_index", "active_layer_collection", "name"},
     ),
@@ -322,3 +322,12 @@ def test_every_pass_is_there_or_named(flag):
     setattr(view_layer, flag, True)
     is_there = asked_for(view_layer) != before or flag in ("use_pass_combined", "use_pass_cryptomatte_accurate")
     assert is_there != bool(list(absent_passes(view_layer)))
+
+
+def test_grease_pencil_is_drawn_by_blender_without_a_warning(scene, add_camera, picture):
+    from splat_addon.blender.engine import final_render
+
+    add_camera(location=(0, -6, 0), rotation=(1.5708, 0, 0))
+    bpy.ops.object.grease_pencil_add(type="MONKEY")
+    assert 0.05 < picture()[..., 3].mean() < 0.5
+    assert final_render.last_frame_stats["notes"] == []
