@@ -7,10 +7,12 @@ Each entry is a setting with the value at which it has no effect. Settings that 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from typing import Any
 
 import bpy
+from mathutils import Matrix
 
 #: shader node type -> unsupported sockets, and the value at which each has no effect. Sockets that only matter together
 #: with another, such as a coat's roughness with its weight, are not listed.
@@ -89,7 +91,25 @@ _LIGHTS: _Rules = (
         lambda o: bool(o.light_linking and o.light_linking.blocker_collection),
         "has shadow linking, and this engine lets everything cast its shadow",
     ),
+    (
+        lambda o: o.data.type == "AREA" and o.data.spread < math.pi * (1 - _ROUNDING),
+        "has a spread of less than 180°, which this engine passes over",
+    ),
+    (
+        lambda o: o.data.type == "SPOT" and _is_uneven(o.matrix_world),
+        "is scaled unevenly, and this engine keeps its beam round",
+    ),
 )
+
+#: The relative difference at which a number is another one.
+_ROUNDING = 1e-4
+
+
+def _is_uneven(matrix: Matrix) -> bool:
+    """Whether a transform scales one axis more than another."""
+    scale = matrix.to_scale()
+    return max(map(abs, scale)) > min(map(abs, scale)) * (1 + _ROUNDING)
+
 
 _WORLDS: _Rules = (
     (

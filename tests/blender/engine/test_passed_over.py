@@ -127,6 +127,16 @@ def open_a_portal(scene, owner, lamp):
     lamp.data.cycles.is_portal = True
 
 
+def narrow_an_area(scene, owner, lamp):
+    lamp.data.type = "AREA"
+    lamp.data.spread = 1
+
+
+def flatten_a_spot(scene, owner, lamp):
+    lamp.data.type = "SPOT"
+    lamp.scale = (1, 0.4, 1)
+
+
 def hide_world(scene, owner, lamp):
     scene.world.cycles_visibility.camera = False
 
@@ -161,6 +171,8 @@ SWITCHES = {
     weaken_gloss: "lamp has an influence on diffuse or glossy light",
     link_shadows: "lamp has shadow linking",
     open_a_portal: "lamp is a portal",
+    narrow_an_area: "lamp has a spread of less than 180°",
+    flatten_a_spot: "lamp is scaled unevenly",
     hide_world: "The world 'sky' is hidden from some rays",
     fill_world: "The world 'sky' has a volume",
     draw_freestyle: "Freestyle is switched on",
@@ -197,6 +209,13 @@ def warned(scene):
 
 
 def test_an_ordinary_scene_has_nothing_to_say(ordinary, warned):
+    assert warned() == []
+
+
+@pytest.mark.parametrize("kind", ["AREA", "SPOT"])
+def test_an_ordinary_area_or_spot_has_nothing_to_say(kind, ordinary, warned):
+    _, _, lamp = ordinary
+    lamp.data.type, lamp.scale, lamp.rotation_euler = kind, (1.7, 1.7, 1.7), (0.3, 0.2, 0.1)
     assert warned() == []
 
 
