@@ -165,7 +165,8 @@ def place(batch: Batch, settings, kind: str = "MESH") -> None:
         print(f"{conversion.name}: {conversion.summary()}", flush=True)
         for note in conversion.notes:
             print(f"{conversion.name}: {note}", flush=True)
-        for note in tie(conversion, made, kind, settings, follows=True, hides=True):
+        follows = kind != "MESH" or settings.follow
+        for note in tie(conversion, made, kind, settings, follows, hides=True):
             print(note, flush=True)
 
 

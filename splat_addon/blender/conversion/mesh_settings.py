@@ -22,6 +22,17 @@ from ..registration import with_property
 from .mesh_conversion import Choices
 
 
+def follow_property():
+    return BoolProperty(
+        name="Follow Source",
+        description=(
+            "Let the surfels follow their source, with its parent, animation and constraints. If off, they are a "
+            "frozen copy"
+        ),
+        default=True,
+    )
+
+
 class ConversionProperties:
     """A mix-in; Blender collects the annotations of all bases."""
 
@@ -144,6 +155,7 @@ class ConversionProperties:
         ),
         default="KEEP",
     )
+    follow: follow_property()
 
 
 #: Properties that the operator and the scene share.
@@ -214,6 +226,7 @@ def draw_properties(layout: bpy.types.UILayout, properties: ConversionProperties
         layout.prop(properties, "crease_angle")
     layout.prop(properties, "splat_size")
     layout.row().prop(properties, "source", expand=True)
+    layout.prop(properties, "follow")
 
 
 class SurfelConversionSettings(ConversionProperties, bpy.types.PropertyGroup):

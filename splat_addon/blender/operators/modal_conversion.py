@@ -7,26 +7,15 @@ from __future__ import annotations
 from concurrent.futures import ThreadPoolExecutor
 
 import bpy
-from bpy.props import BoolProperty
 
 from ..conversion.batch import Batch
+from ..conversion.mesh_settings import follow_property
 from ..conversion.source_record import sources_of
 from ..conversion.ties import tie
 from ..ids import ENGINE, ENGINE_LABEL
 from ..spoken import said
 
 _TIMER_SECONDS = 0.05
-
-
-def follow_property():
-    return BoolProperty(
-        name="Follow Source",
-        description=(
-            "Let the surfels follow their source, with its parent, animation and constraints. If off, they are a "
-            "frozen copy"
-        ),
-        default=True,
-    )
 
 
 def was_converted(context: bpy.types.Context) -> bool:

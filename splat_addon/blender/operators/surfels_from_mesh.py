@@ -43,7 +43,6 @@ meshes, curves, texts, metaballs, and the instances of Geometry Nodes and collec
 
     def draw(self, context):
         draw_properties(self.layout, self)
-        self.layout.prop(self, "follow")
 
     def _new_batch(self, context):
         return ConversionBatch(selected_sources(context), choices(self), context.active_object)

@@ -923,7 +923,7 @@ GERMAN = {
     "Select a point cloud, or a mesh that is not surfels already": (
         "Eine Punktwolke auswählen oder ein Mesh, das noch nicht aus Surfels besteht"
     ),
-    "Select surfaces, in Object Mode": "Im Objektmodus Oberflächen auswählen",
+    "Select objects with surfaces, in Object Mode": "Im Objektmodus Objekte mit Oberflächen auswählen",
     "Select surfels that were converted from an object of this file": (
         "Surfels auswählen, die aus einem Objekt dieser Datei umgewandelt wurden"
     ),

@@ -6,6 +6,7 @@ from __future__ import annotations
 import bpy
 
 from ..ids import EXPORT_PLY, IMPORT_PLY, POINTS_PANEL, SIDEBAR_TAB, SURFELS_FROM_POINTS
+from ..operators.surfels_from_points import selected_points
 
 
 class VIEW3D_PT_surfels_from_points(bpy.types.Panel):
@@ -17,7 +18,10 @@ class VIEW3D_PT_surfels_from_points(bpy.types.Panel):
     bl_options = {"DEFAULT_CLOSED"}  # noqa: RUF012 - Blender reads a set
 
     def draw(self, context):
-        self.layout.operator(SURFELS_FROM_POINTS, icon="POINTCLOUD_POINT")
+        points = self.layout.row()
+        # For surfels its poll is true, because Adjust Last Operation asks it before it undoes the conversion.
+        points.enabled = bool(selected_points(context))
+        points.operator(SURFELS_FROM_POINTS, icon="POINTCLOUD_POINT")
         row = self.layout.row(align=True)
         # "Invoke" asks for the file; a sidebar's own way would run at once.
         row.operator_context = "INVOKE_DEFAULT"

@@ -51,13 +51,12 @@ class VIEW3D_PT_surfels_from_mesh(bpy.types.Panel):
         sources = selected_sources(context)
         if context.active_object in sources:
             self.layout.prop(getattr(context.active_object, OBJECT_SETTINGS), "detail")
-        if sources and context.mode == "OBJECT":
-            text = prediction(context, sources, choices(settings))
-        else:
-            text = said("Select surfaces, in Object Mode")
-        for k, line in enumerate(text.split("\n")):
+        for k, line in enumerate(advice(context, sources, choices(settings)).splitlines()):
             write(self.layout, line, context, "BLANK1" if k else "INFO")
-        button = self.layout.operator(SURFELS_FROM_MESH, icon="OUTLINER_OB_POINTCLOUD")
+        row = self.layout.row()
+        # For surfels its poll is true, because Adjust Last Operation asks it before it undoes the conversion.
+        row.enabled = bool(sources)
+        button = row.operator(SURFELS_FROM_MESH, icon="OUTLINER_OB_POINTCLOUD")
         for name in PROPERTY_NAMES:
             setattr(button, name, getattr(settings, name))
         self._draw_surfels(context)
@@ -85,6 +84,15 @@ class VIEW3D_PT_surfels_from_mesh(bpy.types.Panel):
         # Other engines show a surfel object as points.
         if context.active_object is not None and is_surfel_object(context.active_object) and not shows_surfels(context):
             self.layout.operator(SHOW_SURFELS, icon="SHADING_RENDERED")
+
+
+def advice(context: bpy.types.Context, sources: list[bpy.types.Object], asked: Choices) -> str:
+    """Lines about what the sources will become, or what to select. Nothing is missing while surfels are selected."""
+    if sources and context.mode == "OBJECT":
+        return prediction(context, sources, asked)
+    if context.mode == "OBJECT" and any(map(is_surfel_object, context.selected_objects)):
+        return ""
+    return said("Select objects with surfaces, in Object Mode")
 
 
 def prediction(context: bpy.types.Context, sources: list[bpy.types.Object], asked: Choices) -> str:
