@@ -68,8 +68,24 @@ def _say(engine: bpy.types.RenderEngine, state: _State) -> None:
     share = 1 - (_LOADING * (loading + read) + (1 - _LOADING) * reading) / max(loaded + read, 1)
     compiling = said("Compiling shaders") if state.arrival.is_compiling else ""
     text = f"{said('Preparing surfels')}: {share:.0%}" if loading + read else compiling
-    engine.update_stats("", "; ".join([text, *last_notes] if text else last_notes))
+    engine.update_stats("", "; ".join(filter(None, (text, _warnings(last_notes)))))
     state.says = text
+
+
+#: Length of a warning that fits beside the gizmo of a view, in letters.
+_FITS = 80
+
+
+def _warnings(notes: list[str]) -> str:
+    """The warnings in one short line: Blender draws it without line breaks."""
+    if not notes or (len(notes) == 1 and len(notes[0]) <= _FITS):
+        return "".join(notes)
+    return said(
+        "One warning: see Render Properties > Last Picture"
+        if len(notes) == 1
+        else "{count} warnings: see Render Properties > Last Picture",
+        count=len(notes),
+    )
 
 
 def draw(engine: bpy.types.RenderEngine, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:

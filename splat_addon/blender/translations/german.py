@@ -912,6 +912,7 @@ GERMAN = {
     "Objects are converted in object mode; leave the current mode first": (
         "Objekte werden im Objektmodus umgewandelt; zuerst den jetzigen Modus verlassen"
     ),
+    "One warning: see Render Properties > Last Picture": "Eine Warnung: siehe Rendereigenschaften > Letztes Bild",
     "Points are converted in object mode; leave the current mode first": (
         "Punkte werden im Objektmodus umgewandelt; zuerst den jetzigen Modus verlassen"
     ),
@@ -945,6 +946,9 @@ GERMAN = {
     "Update from {names}": "Aus {names} aktualisieren",
     "{blur} needs more samples": "{blur} braucht mehr Samples",
     "{count:,} surfels of {objects} objects -> {path}": "{count:,} Surfels von {objects} Objekten -> {path}",
+    "{count} warnings: see Render Properties > Last Picture": (
+        "{count} Warnungen: siehe Rendereigenschaften > Letztes Bild"
+    ),
     "{count}, fewer where flat": "{count}, weniger wo eben",
     "{name}: {count:,} surfels": "{name}: {count:,} Surfels",
     "{path} cannot be written: {why}": "{path} kann nicht geschrieben werden: {why}",

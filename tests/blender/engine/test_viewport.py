@@ -49,6 +49,19 @@ def _redrawn(refinement, scene, camera, turns):
     return pixels
 
 
+@pytest.mark.parametrize(
+    ("notes", "line"),
+    [
+        ([], ""),
+        (["The world is hidden"], "The world is hidden"),
+        (["The world is hidden" * 9], "One warning: see Render Properties > Last Picture"),
+        (["one", "two"], "2 warnings: see Render Properties > Last Picture"),
+    ],
+)
+def test_warnings_are_one_short_line(notes, line):
+    assert viewport._warnings(notes) == line
+
+
 @pytest.mark.parametrize("edge", [4096, 40])
 @pytest.mark.parametrize("samples", [1, 3])
 def test_the_view_is_the_render(edge, samples, shown, render, monkeypatch):
