@@ -238,6 +238,7 @@ def form_of(entry: bpy.types.DepsgraphObjectInstance, scene: bpy.types.Scene) ->
 class RENDER_PT_surfel_meshes(EnginePanel, bpy.types.Panel):
     bl_label = "Meshes"
     bl_context = "render"
+    bl_order = 0
 
     def draw(self, context):
         properties = getattr(context.scene, RENDER_SETTINGS)

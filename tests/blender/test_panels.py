@@ -160,6 +160,15 @@ def test_a_stock_panel_that_would_show_what_is_passed_over_stays_away(name):
     assert not hasattr(bpy.types, name) or getattr(bpy.types, name) not in set(visible_panels())
 
 
+def test_what_is_drawn_comes_first_and_the_report_last():
+    panels = [p for p in visible_panels({"render"}) if not getattr(p, "bl_parent_id", "")]
+    orders = {panel.__name__: getattr(panel, "bl_order", 0) for panel in panels}
+    ours = [name for name in orders if "_surfel_" in name]
+    first = {"RENDER_PT_surfel_sampling", "RENDER_PT_surfel_surface", "RENDER_PT_surfel_meshes"}
+    assert {name for name in ours if orders[name] == 0} == first
+    assert [name for name in orders if orders[name] == max(orders.values())] == ["RENDER_PT_surfel_report"]
+
+
 @pytest.mark.parametrize(
     "name", ["DATA_PT_camera_dof", "RENDER_PT_simplify", "RENDER_PT_simplify_viewport", "VIEWLAYER_PT_override"]
 )

@@ -611,11 +611,11 @@ GERMAN = {
         "90 Grad behält alle Proben"
     ),
     "Sampling": "Sampling",
-    "Scene's Resolution": "Auflösung der Szene",
     "Selected Only": "Nur Auswahl",
     "Shading": "Schattierung",
     "Shadow": "Schatten",
     "Shadows": "Schatten",
+    "Shared by all lights": "Für alle Lichter gemeinsam",
     "Show with Surfel Splatting": "Mit Surfel Splatting zeigen",
     (
         "Filters each splat exactly: smooth and free of flicker at one sample per pixel, slower than Quads "

@@ -86,7 +86,8 @@ class DATA_PT_surfel_light_shadow(_LightPanel, bpy.types.Panel):
         layout = self.layout
         layout.use_property_split = True
         layout.active = context.light.use_shadow
-        layout.prop(getattr(context.scene, RENDER_SETTINGS), "shadow_resolution", text="Scene's Resolution")
+        layout.prop(getattr(context.scene, RENDER_SETTINGS), "shadow_resolution")
+        layout.label(text="Shared by all lights", icon="INFO")
 
 
 class DATA_PT_surfel_light_nodes(_LightPanel, bpy.types.Panel):

@@ -18,6 +18,8 @@ from .preset_panels import RENDER_PT_surfel_presets
 
 class _RenderPanel(EnginePanel):
     bl_context = "render"
+    #: Behind the panels with 0: what is drawn, and how.
+    bl_order = 1
 
     def draw(self, context):
         super().draw(context)
@@ -27,6 +29,7 @@ class _RenderPanel(EnginePanel):
 
 class RENDER_PT_surfel_sampling(_RenderPanel, bpy.types.Panel):
     bl_label = "Sampling"
+    bl_order = 0
     properties = ("method",)
 
     def draw_header_preset(self, context):
@@ -57,6 +60,7 @@ def blurs_that_need_samples(scene: bpy.types.Scene, view_layer: bpy.types.ViewLa
 
 class RENDER_PT_surfel_surface(_RenderPanel, bpy.types.Panel):
     bl_label = "Surface"
+    bl_order = 0
     properties = ("shading", "epsilon")
 
     def draw(self, context):

@@ -16,6 +16,8 @@ from .wrapped_text import write
 class RENDER_PT_surfel_report(EnginePanel, bpy.types.Panel):
     bl_label = "Last Picture"
     bl_context = "render"
+    #: Behind all settings, and behind Blender's Color Management, whose order is 100.
+    bl_order = 200
     bl_options = frozenset({"DEFAULT_CLOSED"})
 
     def draw(self, context):
