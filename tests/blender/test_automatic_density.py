@@ -69,8 +69,8 @@ def test_a_wire_has_surfels_across_its_width(cube, camera):
     plain = prepared(cube).spacing
     cube.data.transform(Matrix.Diagonal((plain, plain, 1, 1)))  # twice as wide as surfels are apart
     found = prepared(cube)
-    assert found.spacing == pytest.approx(plain / 2, rel=0.05)
-    assert found.reason == "2.0 times finer, as it is thin, than 1 pixels where the camera is nearest"
+    assert found.spacing == pytest.approx(2 * plain / automatic_density.ACROSS_WIRES, rel=0.01)
+    assert found.reason.endswith(" times finer, as it is thin, than 1 pixels where the camera is nearest")
     cube.data.transform(Matrix.Diagonal((0.01, 0.01, 1, 1)))
     assert prepared(cube).reason == "1 pixels where the camera is nearest"
 

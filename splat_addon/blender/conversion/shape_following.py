@@ -79,7 +79,7 @@ def not_bent(made: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> str | No
     if len(sources) != 1 or not follows(made, sources[0]):
         return None
     [source] = sources
-    modifier = next(filter(_is_ours, made.modifiers), None)
+    modifier = next((m for m in made.modifiers if uses_group(m, _MAKE)), None)
     if modifier is None:
         why = _why_never(source)
         return why and f"What bends {source.name!r} does not bend its surfels: {why}"
