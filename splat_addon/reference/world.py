@@ -15,6 +15,7 @@ class WorldLight:
 
     def __init__(self, scene: Scene, camera: Camera):
         self._tint, self._environment = np.array(scene.world), scene.environment
+        self._seen, self._seen_environment = np.array(scene.seen_world), scene.seen_environment
         if self._environment is not None:
             self._to_picture = self._environment.rotation @ camera.matrix_world[:3, :3]
             texels = self._environment.level_texels()
@@ -22,9 +23,9 @@ class WorldLight:
 
     def background(self, direction: np.ndarray) -> np.ndarray:
         """(n, 3) radiance of the background in that direction."""
-        if self._environment is None:
-            return np.broadcast_to(self._tint, direction.shape)
-        return self._tint * _image_at(self._environment, self._turned(direction))
+        if self._seen_environment is None:
+            return np.broadcast_to(self._seen, direction.shape)
+        return self._seen * _image_at(self._seen_environment, self._turned(direction))
 
     def irradiance(self, normal: np.ndarray) -> np.ndarray:
         """(n, 3) irradiance of a matt surface with that normal, over pi."""

@@ -14,7 +14,7 @@ from .settings import Settings, held_arrays
 
 def background_pixel(scene: Scene, settings: Settings) -> tuple[float, float, float, float]:
     """Premultiplied colour of a pixel that nothing covers."""
-    return (0.0, 0.0, 0.0, 0.0) if settings.transparent_film else (*scene.world, 1.0)
+    return (0.0, 0.0, 0.0, 0.0) if settings.transparent_film else (*scene.seen_world, 1.0)
 
 
 def background_texels(scene: Scene, settings: Settings) -> dict[str, np.ndarray]:

@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The blurred levels of a world image agree with the integrals that they stand for."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from splat_addon.reference import render_exact
+from splat_addon.reference.extremes import discs
 from splat_addon.rendering import Camera, Environment, Renderer, Scene, Settings, plan
 from splat_addon.rendering.scene.environment import LEVEL_SIDE, LEVELS, equirectangular_directions, level_directions
 
@@ -64,6 +68,20 @@ def test_a_picture_without_surfels_is_the_world(on_device):
     seen /= np.linalg.norm(seen, axis=2, keepdims=True)
     np.testing.assert_allclose(frame.color[..., :3], seen * 0.5 + 0.5, atol=2e-3)
     assert (frame.coverage == 0).all() and (frame.depth == 1e10).all()
+
+
+@pytest.mark.parametrize("hides", [False, True])
+def test_a_background_of_its_own_is_seen_and_does_not_light(on_device, hides):
+    sky = Environment(np.full((4, 8, 3), 0.5))
+    disc = discs((0, 0, -3), (0.8, 0, 0), (0, 0.8, 0))
+    lit = Scene([disc], world=(1, 1, 1), environment=sky)
+    seen = replace(lit, background=(0.2, 0.4, 0.6), hides_environment=hides)
+    settings = Settings(method="quad", shading="phong", supersampling=1)
+    plain, frame = on_device(lambda device: [Renderer(device).render(s, CAMERA, settings).color for s in (lit, seen)])
+    np.testing.assert_allclose(frame[0, 0, :3], np.multiply((0.2, 0.4, 0.6), 1 if hides else 0.5), atol=1e-4)
+    np.testing.assert_array_equal(frame[8, 8], plain[8, 8])
+    truth = render_exact(seen, CAMERA, settings).color
+    np.testing.assert_allclose(frame[0, 0], truth[0, 0], atol=1e-4)
 
 
 def test_only_a_picture_that_is_seen_or_lights_is_planned():

@@ -3,5 +3,5 @@
 
 // Premultiplied, for the sample at that texel.
 vec4 world_background(ivec2 texel) {
-  return vec4(vec3(1.0) * frame.world.rgb, 1.0) * frame.world.w;
+  return vec4(vec3(1.0) * frame.background.rgb, 1.0) * frame.background.w;
 }

@@ -8,5 +8,5 @@ vec4 world_background(ivec2 texel) {
   vec2 place = view.window.xy + (vec2(texel) + 0.5) * view.window.zw;
   vec3 direction = view.is_parallel > 0.5 ? vec3(0.0, 0.0, -1.0) : vec3(place, -1.0);
   vec3 seen = environment_image_at(mat3(frame.to_environment) * normalize(direction));
-  return vec4(seen * frame.world.rgb, 1.0) * frame.world.w;
+  return vec4(seen * frame.background.rgb, 1.0) * frame.background.w;
 }

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Converts Blender's world to a uniform radiance, or to an environment if its background is an image."""
+"""Converts Blender's world to a uniform radiance, or to an environment if its background is an image, and to what the
+camera sees of it if that differs."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import bpy
 import numpy as np
@@ -14,7 +15,8 @@ from ...rendering.upload.atlas import MAX_EDGE
 from ..materials.node_trees import uses_nodes
 from ..materials.texture_images import UnreadableError, fingerprint, linear_pixels, settings_of
 from . import passed_over
-from .shading import MAX_RADIANCE, color_times_strength, finite_radiance, output_source
+from .shading import MAX_RADIANCE, color_times_strength, finite_radiance
+from .world_shaders import Background, backgrounds
 
 Color = tuple[float, float, float]
 BLACK = (0.0, 0.0, 0.0)
@@ -31,25 +33,24 @@ class WorldStore:
         """Start a frame. is_edited: the image's pixels may differ, as after it was reloaded or saved."""
         self._is_doubted |= is_edited
 
-    def read(self, world: bpy.types.World | None, notes) -> tuple[Color, Environment | None]:
-        """The radiance of the background, and an image that is multiplied by it if there is one; black without a
-        world."""
+    def read(self, world: bpy.types.World | None, notes) -> dict[str, Any]:
+        """The fields of a `Scene` that describe its world, which is black if there is none."""
         if world is None:
-            return BLACK, None
-        node = output_source(world.node_tree, "OUTPUT_WORLD", "BACKGROUND") if uses_nodes(world) else None
+            return {"world": BLACK}
         for sentence in passed_over.of_world(world):
             notes.add(sentence)
-        owner = f"The world {world.name!r}"
-        if node is None:
-            return (BLACK if uses_nodes(world) else tuple(world.color)), None
-        picture = _picture(node.inputs["Color"], world, notes)
-        if picture is None:
-            return finite_radiance(color_times_strength(node, owner, notes), owner, notes), None
-        strength = node.inputs["Strength"]
-        if strength.is_linked:
-            notes.add(f"{owner} has a textured strength; the socket's plain value is used")
-        even = finite_radiance((float(strength.default_value),) * 3, owner, notes)
-        return even, self._environment(picture, notes)
+        if not uses_nodes(world):
+            return {"world": tuple(world.color)}
+        (light, picture), (seen, seen_picture) = (_sum(each, world, notes) for each in backgrounds(world, notes))
+        fields = {"world": light, "environment": self._environment(picture, notes) if picture else None}
+        if seen_picture is not None and not _are_same(picture, seen_picture):
+            notes.add(
+                f"The world {world.name!r} shows a picture to the camera that does not light the scene; the background "
+                "is what lights it"
+            )
+            return fields
+        is_hidden = picture is not None and seen_picture is None
+        return fields | ({"background": seen, "hides_environment": is_hidden} if is_hidden or seen != light else {})
 
     def _environment(self, picture: _Picture, notes) -> Environment | None:
         settings = *settings_of(picture.image), picture.rotation.tobytes()
@@ -101,6 +102,27 @@ def _reduced(pixels: np.ndarray, down: int, across: int) -> np.ndarray:
     rows, columns = pixels.shape[0] // down, pixels.shape[1] // across
     whole = pixels[: rows * down, : columns * across]
     return whole.reshape(rows, down, columns, across, 3).mean(axis=(1, 3))
+
+
+def _sum(added: list[Background], world: bpy.types.World, notes) -> tuple[Color, _Picture | None]:
+    """The radiance of a sum of backgrounds, and a picture that is multiplied by it if there is one."""
+    owner, total = f"The world {world.name!r}", np.zeros(3)
+    for node, share in added:
+        picture = _picture(node.inputs["Color"], world, notes)
+        if picture is None:
+            total += share * np.array(color_times_strength(node, owner, notes))
+            continue
+        if len(added) > 1:
+            notes.add(f"{owner} mixes a picture with other backgrounds; only the picture is drawn, with its share")
+        strength = node.inputs["Strength"]
+        if strength.is_linked:
+            notes.add(f"{owner} has a textured strength; the socket's plain value is used")
+        return finite_radiance((share * strength.default_value,) * 3, owner, notes), picture
+    return finite_radiance(tuple(total.tolist()), owner, notes), None
+
+
+def _are_same(a: _Picture | None, b: _Picture | None) -> bool:
+    return a is not None and b is not None and a.image == b.image and np.array_equal(a.rotation, b.rotation)
 
 
 class _Picture(NamedTuple):

@@ -17,7 +17,8 @@ def _to_environment(tile) -> np.ndarray:
 
 
 VALUES = {
-    "world": ("vec4", lambda tile: (*tile.scene.world, 0.0 if tile.settings.transparent_film else 1.0)),
+    "world": ("vec4", lambda tile: (*tile.scene.world, 1.0)),
+    "background": ("vec4", lambda tile: (*tile.scene.seen_world, 0.0 if tile.settings.transparent_film else 1.0)),
     "to_environment": ("mat4", _to_environment),
 }
 INPUTS = {
@@ -54,4 +55,4 @@ def parts(planning, p):
 
 def is_shown(planning) -> bool:
     """Whether the background is a visible image."""
-    return planning.scene.environment is not None and not planning.settings.transparent_film
+    return planning.scene.seen_environment is not None and not planning.settings.transparent_film

@@ -297,6 +297,8 @@ class Scene:
     world: (3,) scene-linear radiance of the background, which lights every surface.
     environment: an image of the surroundings, multiplied by `world`.
     polygons: `PolygonInstance`s, or bare `Polygons`, among the surfels.
+    background: (3,) radiance that is seen behind everything; None: that of the world. hides_environment: whether it is
+        seen without the environment, which still lights.
     """
 
     surfels: tuple[Instance, ...] = ()
@@ -304,6 +306,8 @@ class Scene:
     world: tuple[float, float, float] = (0.0, 0.0, 0.0)
     environment: Environment | None = None
     polygons: tuple[PolygonInstance, ...] = ()
+    background: tuple[float, float, float] | None = None
+    hides_environment: bool = False
 
     def __post_init__(self):
         instances = tuple(s if isinstance(s, Instance) else Instance(s) for s in self.surfels)
@@ -311,12 +315,28 @@ class Scene:
         object.__setattr__(self, "lights", tuple(self.lights))
         among = tuple(p if isinstance(p, PolygonInstance) else PolygonInstance(p) for p in self.polygons)
         object.__setattr__(self, "polygons", among)
-        world = tuple(float(c) for c in self.world)
-        if len(world) != 3 or not np.isfinite(world).all():
-            raise ValueError(f"The world's radiance must be 3 finite numbers, not {self.world!r}.")
-        object.__setattr__(self, "world", world)
+        object.__setattr__(self, "world", _radiance("world", self.world))
+        if self.background is not None:
+            object.__setattr__(self, "background", _radiance("background", self.background))
+
+    @property
+    def seen_environment(self) -> Environment | None:
+        """The environment, if it is the background."""
+        return None if self.hides_environment else self.environment
+
+    @property
+    def seen_world(self) -> tuple[float, float, float]:
+        """(3,) radiance of the background, which multiplies the environment if that is seen."""
+        return self.world if self.background is None else self.background
 
     @property
     def shown(self) -> tuple[Placed, ...]:
         """Everything visible, of either kind."""
         return tuple(placed for placed in (*self.surfels, *self.polygons) if len(placed.shape))
+
+
+def _radiance(name: str, given) -> tuple[float, ...]:
+    radiance = tuple(float(channel) for channel in given)
+    if len(radiance) != 3 or not np.isfinite(radiance).all():
+        raise ValueError(f"The {name}'s radiance must be 3 finite numbers, not {given!r}.")
+    return radiance

@@ -129,7 +129,7 @@ def read_world(scene):
     def read(is_edited=False):
         notes = Notes()
         store.begin_frame(set(), are_materials_edited=is_edited)
-        return store.world.read(scene.world, notes)[1], notes.sentences()
+        return store.world.read(scene.world, notes)["environment"], notes.sentences()
 
     return read
 
@@ -171,3 +171,60 @@ def test_what_a_world_s_picture_lacks_is_said_in_each_frame(add_picture, read_wo
     image.save()
     first, second = read_world()[1], read_world()[1]
     assert "The world's picture 'broken' has infinite or too large numbers; they count as 0" in first == second
+
+
+def mixed(world, kind, color, factor=None):
+    """Put a shader of that kind between the world's Background node and its output, with a second Background."""
+    tree = world.node_tree
+    second, both = tree.nodes.new("ShaderNodeBackground"), tree.nodes.new(kind)
+    second.inputs["Color"].default_value, second.inputs["Strength"].default_value = (*color, 1), 2
+    sockets = [socket for socket in both.inputs if socket.type == "SHADER"]
+    for node, socket in zip((tree.nodes["Background"], second), sockets, strict=True):
+        tree.links.new(node.outputs[0], socket)
+    tree.links.new(both.outputs[0], tree.nodes["World Output"].inputs["Surface"])
+    if isinstance(factor, float):
+        both.inputs[0].default_value = factor
+    elif factor:
+        tree.links.new(tree.nodes.new("ShaderNodeLightPath").outputs[factor], both.inputs[0])
+    return tree
+
+
+@pytest.mark.parametrize(("kind", "factor"), [("ShaderNodeMixShader", 0.25), ("ShaderNodeAddShader", None)])
+def test_mixed_and_added_backgrounds_are_as_in_cycles(kind, factor, scene, add_camera, add_world, as_cycles):
+    add_camera()
+    mixed(add_world((0.2, 0.4, 0.8), 1.5), kind, (0.5, 0.1, 0.2), factor)
+    scene.render.film_transparent = False
+    assert as_cycles()
+
+
+@pytest.mark.parametrize("has_picture", [False, True])
+def test_one_background_lights_and_the_camera_sees_another(
+    has_picture, scene, add_camera, add_world, add_sheet, picture
+):
+    add_camera((0, 0, 4))
+    add_sheet(side=1.0, count=8)
+    tree = mixed(add_world((0.2, 0.4, 0.8)), "ShaderNodeMixShader", (0.05, 0.1, 0.2), "Is Camera Ray")
+    if has_picture:
+        image = bpy.data.images.new("sky", 8, 4, float_buffer=True)
+        image.pixels.foreach_set(np.tile(np.float32((0.2, 0.4, 0.8, 1)), 32))
+        node = tree.nodes.new("ShaderNodeTexEnvironment")
+        node.image = image
+        tree.links.new(node.outputs[0], tree.nodes["Background"].inputs["Color"])
+    scene.render.film_transparent, scene.surfel_splatting.shading = False, "phong"
+    drawn = picture()
+    assert np.allclose(drawn[0, 0], (0.1, 0.2, 0.4, 1), atol=1e-5)
+    middle = drawn[16, 16, :3]
+    assert np.allclose(middle / middle[2], (0.25, 0.5, 1), atol=0.02) and middle[2] > 0.6
+
+
+def test_a_world_s_unknown_shaders_are_named(scene, add_camera, add_world, picture, said):
+    add_camera()
+    tree = mixed(add_world((0.2, 0.4, 0.8)), "ShaderNodeMixShader", (0.5, 0.1, 0.2))
+    mix = tree.get_output_node("ALL").inputs["Surface"].links[0].from_node
+    tree.links.new(tree.nodes.new("ShaderNodeTexNoise").outputs[0], mix.inputs[0])
+    tree.links.new(tree.nodes.new("ShaderNodeBsdfTransparent").outputs[0], mix.inputs[1])
+    scene.render.film_transparent = False
+    assert np.allclose(picture(), (0.5, 0.1, 0.2, 1))
+    words = said()
+    assert "The world 'world' has a Transparent BSDF node, which counts as black" in words
+    assert "The world 'world' mixes its shaders by a Noise Texture node; the plain value" in words
