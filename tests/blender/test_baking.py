@@ -173,6 +173,36 @@ def test_instances_are_baked_where_they_stand(square, convert, surfels_of):
     assert len(surfels) == 256 and np.abs(surfels.roughness - x).max() < 2e-3
 
 
+@pytest.mark.parametrize("asks", ["Color", "Object Index", "an attribute", "a colour attribute"])
+def test_what_a_material_asks_about_its_object_is_baked(asks, square, convert, surfels_of):
+    square.color, square.pass_index, square["wear"], square["tint"] = (0.9, 0.2, 0.6, 1), 3, 0.25, (0.1, 0.8, 0.7)
+    nodes = Nodes(square)
+    if asks in ("Color", "Object Index"):
+        node = nodes.tree.nodes.new("ShaderNodeObjectInfo")
+        output = node.outputs[asks]
+    else:
+        node = nodes.tree.nodes.new("ShaderNodeAttribute")
+        node.attribute_type = "OBJECT"
+        node.attribute_name, output = ("wear", "Fac") if asks == "an attribute" else ("tint", "Color")
+        output = next(socket for socket in node.outputs if socket.identifier == output)
+    nodes.link(output, "Base Color")
+    expected = {
+        "Color": (0.9, 0.2, 0.6),
+        "Object Index": 3,
+        "an attribute": 0.25,
+        "a colour attribute": (0.1, 0.8, 0.7),
+    }
+    colors = surfels_of(convert(resolution=4, bake_materials=True)[0]).colors[:, :3]
+    assert np.allclose(colors, expected[asks], atol=1e-3)
+
+
+def test_what_a_bake_cannot_reproduce_is_said(square, convert, capfd):
+    nodes = Nodes(square)
+    nodes.link(nodes.tree.nodes.new("ShaderNodeObjectInfo").outputs["Random"], "Roughness")
+    convert(resolution=4, bake_materials=True)
+    assert "'procedural' depends on Object Info's Random, which a bake cannot reproduce" in capfd.readouterr().out
+
+
 def test_the_file_is_left_as_it_was(square, convert):
     nodes = Nodes(square)
     nodes.link(nodes.coordinates(), "Base Color")

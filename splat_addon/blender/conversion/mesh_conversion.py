@@ -36,7 +36,7 @@ from ...sampling import (
 from ...surfels import Surfels
 from ..export.object_detail import detail_of, finer
 from ..geometry.mesh_extraction import read_mesh, unread_sentences
-from ..materials.baking import Bakeable, baked
+from ..materials.baking import Bakeable, baked, baked_otherwise
 from ..materials.material_surfaces import Unread
 from .automatic_density import automatic_spacing
 from .camera_density import without_camera
@@ -290,6 +290,7 @@ def bake(conversion: Conversion, depsgraph: bpy.types.Depsgraph) -> None:
         _LATTICE_REACH if REDUCTIONS[choices.reduction].moves else _REACH,
     )
     conversion.surfels, missed = baked(conversion.surfels, what, depsgraph)
+    conversion.notes += baked_otherwise(conversion.unread)
     if missed:
         conversion.notes.append(f"The bake did not meet {missed:,} values; the plain values of their sockets are used")
     conversion.seconds += time.perf_counter() - start

@@ -11,6 +11,7 @@ differentiate.)
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import bpy
 import numpy as np
@@ -51,7 +52,8 @@ class BakeScene:
             self._use_cycles()
             for source in sources:
                 for piece in shown_by(source, depsgraph, self._copied).pieces:
-                    self._objects += [self._object(piece.content, matrix) for matrix in piece.matrices]
+                    mesh, asked = piece.content
+                    self._objects += [self._object(mesh, matrix, asked) for matrix in piece.matrices]
         except BaseException:
             self.__exit__()
             raise
@@ -119,8 +121,8 @@ class BakeScene:
         self._scene.cycles.use_denoising = False
         self._scene.cycles.device = "CPU"
 
-    def _copied(self, evaluated: bpy.types.Object, mesh: bpy.types.Mesh) -> bpy.types.Mesh:
-        """A copy of an evaluated mesh, with copies of its materials."""
+    def _copied(self, evaluated: bpy.types.Object, mesh: bpy.types.Mesh) -> tuple[bpy.types.Mesh, _Asked]:
+        """A copy of an evaluated mesh, with copies of its materials, and what materials can ask about its object."""
         copy = self._keep(mesh.copy())
         # Generated coordinates refer to the bounding box before modifiers.
         plain = evaluated.original.data
@@ -133,17 +135,21 @@ class BakeScene:
                 copy.materials[index] = own
             else:
                 copy.materials.append(own)
-        return copy
+        return copy, _Asked.about(evaluated)
 
     def _material(self, original: bpy.types.Material) -> bpy.types.Material:
         if original not in self._copies:
             self._copies[original] = self._keep(original.copy())
         return self._copies[original]
 
-    def _object(self, mesh: bpy.types.Mesh, matrix: np.ndarray) -> bpy.types.Object:
+    def _object(self, mesh: bpy.types.Mesh, matrix: np.ndarray, asked: _Asked | None = None) -> bpy.types.Object:
         made = self._keep(bpy.data.objects.new(mesh.name, mesh))
         self._scene.collection.objects.link(made)
         made.matrix_world = Matrix(matrix)
+        if asked is not None:
+            made.color, made.pass_index = asked.color, asked.index
+            for name, value in asked.properties.items():
+                made[name] = value
         return made
 
     def _squares(self, corners: np.ndarray) -> tuple[bpy.types.Image, bpy.types.Object]:
@@ -175,6 +181,20 @@ class BakeScene:
         node.image, material.node_tree.nodes.active = image, node
         mesh.materials.append(material)
         return image, self._object(mesh, np.eye(4))
+
+
+class _Asked(NamedTuple):
+    """What the Object Info and Attribute nodes of a material can ask about an object."""
+
+    color: tuple[float, ...]
+    index: int
+    properties: dict[str, float | list[float]]
+
+    @classmethod
+    def about(cls, owner: bpy.types.Object) -> _Asked:
+        listed = ((name, value.to_list() if hasattr(value, "to_list") else value) for name, value in owner.items())
+        numbers = {name: value for name, value in listed if isinstance(value, int | float | list)}
+        return cls(tuple(owner.color), owner.pass_index, numbers)
 
 
 def _emit(material: bpy.types.Material, channel: str) -> None:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import bpy
@@ -69,6 +69,28 @@ def baked(surfels: Surfels, what: Bakeable, depsgraph: bpy.types.Depsgraph) -> t
                 target[chunk[good]] = values[good] if target.ndim == 2 else values[good, 0]
     _uncover(arrays["colors"], slots, what)
     return replace(surfels, **arrays), missed
+
+
+def baked_otherwise(unread: Iterable[tuple[bpy.types.Material, Unread]]) -> list[str]:
+    """A sentence for each material whose baked values differ from those that Blender renders."""
+    materials = dict.fromkeys(material for material, _ in unread)
+    return [
+        f"The material {material.name!r} depends on {name}, which a bake cannot reproduce; other values were baked"
+        for material in materials
+        for name in dict.fromkeys(_not_reproduced(material.node_tree))
+    ]
+
+
+def _not_reproduced(tree: bpy.types.NodeTree) -> Iterator[str]:
+    for node in tree.nodes:
+        if node.type == "GROUP" and node.node_tree is not None:
+            yield from _not_reproduced(node.node_tree)
+        elif node.type == "OBJECT_INFO" and node.outputs["Random"].is_linked:
+            yield "Object Info's Random"  # it comes from the object's name
+        elif node.type == "ATTRIBUTE" and node.attribute_type in ("INSTANCER", "VIEW_LAYER"):
+            yield f"an attribute of the {node.attribute_type.replace('_', ' ').lower()}"
+        elif node.type == "PARTICLE_INFO":
+            yield "Particle Info"
 
 
 def _uncover(colors: np.ndarray, slots: np.ndarray, what: Bakeable) -> None:
