@@ -36,10 +36,20 @@ def baked(tree, convert, surfels_of):
 def add(tree, kind, color=None, **values):
     node = tree.nodes.new(kind)
     if color is not None:
-        node.inputs["Color"].default_value = color
+        tree.links.new(not_read(tree, color), node.inputs["Color"])
     for name, value in values.items():
         node.inputs[name].default_value = value
     return node
+
+
+def not_read(tree, color):
+    """A colour from a node that is not read, but baked."""
+    node = tree.nodes.new("ShaderNodeMix")
+    node.data_type = "RGBA"
+    for socket in node.inputs:
+        if socket.type == "RGBA":
+            socket.default_value = color
+    return next(socket for socket in node.outputs if socket.type == "RGBA")
 
 
 def joined(tree, kind, first, second, factor=None):
@@ -69,8 +79,9 @@ def test_a_mix_with_transparent_keeps_transparency_and_colour(tree, baked):
     assert np.abs(surfels.colors - (*RED[:3], 0.75)).max() < 3e-3
 
 
-def test_a_holdout_is_clear(tree, baked):
-    assert np.abs(baked(add(tree, "ShaderNodeHoldout")).colors[:, 3]).max() < 1e-3
+def test_a_mixed_holdout_is_clear(tree, baked):
+    holdout, red = add(tree, "ShaderNodeHoldout"), add(tree, "ShaderNodeBsdfDiffuse", RED)
+    assert np.abs(baked(joined(tree, "ShaderNodeMixShader", holdout, red, 0.0)).colors[:, 3]).max() < 1e-3
 
 
 def test_an_added_emission_is_kept(tree, baked):
@@ -78,6 +89,14 @@ def test_an_added_emission_is_kept(tree, baked):
     surfels = baked(joined(tree, "ShaderNodeAddShader", add(tree, "ShaderNodeBsdfDiffuse", RED), light))
     assert np.abs(surfels.colors - RED).max() < 2e-3
     assert np.abs(surfels.emission - 3 * np.array(BLUE[:3])).max() < 1e-2
+
+
+def test_a_lamp_mixed_with_transparent_keeps_its_brightness(tree, baked):
+    """Where it covers a surfel, its whole radiance is emitted."""
+    clear, light = add(tree, "ShaderNodeBsdfTransparent"), add(tree, "ShaderNodeEmission", BLUE, Strength=3.0)
+    surfels = baked(joined(tree, "ShaderNodeMixShader", clear, light, 0.5))
+    assert np.abs(surfels.colors[:, 3] - 0.5).max() < 2e-3
+    assert np.abs(surfels.emission - 3 * np.array(BLUE[:3])).max() < 2e-2
 
 
 def test_a_muted_mix_hands_on_its_first_shader(tree, baked):

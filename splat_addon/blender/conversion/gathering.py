@@ -60,6 +60,7 @@ def gather(
         raise ValueError(_why_nothing(sources, shown))
     meshes, materials = _with_shared_slots([piece for piece in pieces if len(piece.content.triangles)])
     notes = [note for each in shown for note in each.notes()]
+    notes += [f"T{sentence[1:]}; its faces are left out" for piece in pieces for sentence in piece.content.unseen]
     unread = tuple(dict.fromkeys(each for piece in pieces for each in piece.content.unread))
     if len(sources) > 1:
         notes += [
@@ -74,6 +75,9 @@ def gather(
 
 def _why_nothing(sources: list[bpy.types.Object], shown: list[Shown]) -> str:
     points = sum(len(piece.content.triangles.positions) for each in shown for piece in each.pieces)
+    unseen = dict.fromkeys(sentence for each in shown for piece in each.pieces for sentence in piece.content.unseen)
+    if unseen:
+        return f"None of its faces is seen ({', '.join(unseen)}); give them a material with a surface."
     sentence = why_nothing(sources[0], shown[0], points)
     return " ".join([sentence, *(f"{note}." for note in shown[0].notes())])
 

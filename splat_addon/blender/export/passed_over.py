@@ -14,6 +14,8 @@ from typing import Any
 import bpy
 from mathutils import Matrix
 
+from ..materials.surface_shaders import Shader
+
 #: shader node type -> unsupported sockets, and the value at which each has no effect. Sockets that only matter together
 #: with another, such as a coat's roughness with its weight, are not listed.
 SOCKETS = {
@@ -27,22 +29,47 @@ SOCKETS = {
         "Thin Film Thickness": 0.0,
     },
     "BSDF_DIFFUSE": {"Roughness": 0.0},
+    "BSDF_GLOSSY": {"Anisotropy": 0.0},
+    "BSDF_METALLIC": {"Anisotropy": 0.0, "Thin Film Thickness": 0.0},
+    "BSDF_GLASS": {"Thin Film Thickness": 0.0},
+}
+
+#: shader node type -> how this engine draws it instead
+_INSTEAD = {
+    "BSDF_METALLIC": "as a metal without Edge Tint",
+    "BSDF_GLASS": "as an opaque surface of its colour",
+    "BSDF_REFRACTION": "as an opaque surface of its colour",
+    "BSDF_TRANSLUCENT": "as a matt surface, lit on the side that is seen",
+    "SUBSURFACE_SCATTERING": "as a matt surface",
+    "BSDF_TOON": "as a matt surface",
+    "BSDF_SHEEN": "as a matt surface",
 }
 
 #: Sockets of a material output other than its surface.
 _OUTPUTS = ("Volume", "Displacement", "Thickness")
 
 
-def of_material(material: bpy.types.Material, shader: bpy.types.Node) -> Iterator[str]:
-    """A sentence about unsupported settings of `shader`, connected to the material's output, and of the output
+def of_material(material: bpy.types.Material, shaders: list[Shader]) -> Iterator[str]:
+    """Sentences about unsupported settings of `shaders`, connected to the material's output, and of the output
     itself."""
-    neutral = SOCKETS.get(shader.type, {})
-    sockets = {socket.name: socket for socket in shader.inputs if socket.enabled}
-    names = [name for name, value in neutral.items() if name in sockets and not _does_nothing(sockets[name], value)]
+    for shader in shaders:
+        if shader.node.type in _INSTEAD:
+            yield (
+                f"The material {material.name!r} has a {shader.node.bl_label} node, which this engine draws "
+                f"{_INSTEAD[shader.node.type]}"
+            )
+    names = list(dict.fromkeys(name for shader in shaders for name in _unsupported(shader)))
     output = material.node_tree.get_output_node("ALL")
     names += [name for name in _OUTPUTS if output and name in output.inputs and output.inputs[name].is_linked]
     if names:
         yield f"The material {material.name!r} has {listed(names)}, which this engine passes over"
+
+
+def _unsupported(shader: Shader) -> Iterator[str]:
+    enabled = {socket.name for socket in shader.node.inputs if socket.enabled}
+    for name, value in SOCKETS.get(shader.node.type, {}).items():
+        if name in enabled and not _does_nothing(shader.socket(name), value):
+            yield name
 
 
 def _does_nothing(socket: bpy.types.NodeSocket, neutral: Any) -> bool:

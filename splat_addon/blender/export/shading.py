@@ -12,9 +12,10 @@ import numpy as np
 
 from ...rendering import Finish, Light, Material
 from ...rendering.upload.packing import reflectance
+from ..materials.mean_surfaces import mean_of
 from ..materials.node_products import linked
 from ..materials.node_trees import uses_nodes
-from ..materials.transparent_mixes import transparent_mix
+from ..materials.surface_shaders import CLEAR, Part, Shader, parts, surface_shader, why_unseen
 from . import passed_over
 
 #: Blender's light type -> its emitting area, by which the energy of a non-normalised light is multiplied, as in Cycles:
@@ -87,6 +88,8 @@ def color_times_strength(node: bpy.types.Node, owner: str, notes) -> tuple[float
     return tuple(c * strength.default_value for c in color.default_value[:3])
 
 
+BLACK = (0.0, 0.0, 0.0)
+
 #: Maximum radiance of a world or a material per channel: more would overflow float32 after lighting.
 MAX_RADIANCE = 1e30
 
@@ -97,7 +100,7 @@ def finite_radiance(radiance: tuple[float, float, float], owner: str, notes) -> 
         return radiance
     red, green, blue = radiance
     notes.add(f"{owner} emits {red:g}, {green:g}, {blue:g}, more than a picture can store; it is rendered black")
-    return 0.0, 0.0, 0.0
+    return BLACK
 
 
 def shading_material(material: bpy.types.Material | None, notes, own: Collection[str] = ()) -> Material:
@@ -107,22 +110,52 @@ def shading_material(material: bpy.types.Material | None, notes, own: Collection
     """
     if material is None or not uses_nodes(material):
         return Material(index=material.pass_index if material else 0)
-    node = output_source(material.node_tree, "OUTPUT_MATERIAL", *_SHADERS)
-    if node is None:
+    shader = surface_shader(material)
+    if why := why_unseen(material):
+        for sentence in passed_over.of_material(material, []) if shader else ():
+            notes.add(sentence)
+        if shader is None or not shader.is_clear:
+            notes.add(f"The material {material.name!r} {why}")
+        return Material(index=material.pass_index)
+    mixed = [part for part in parts(shader) if part.shader.node.type not in CLEAR] if shader else []
+    known = [part for part in mixed if part.shader.node.type in _SHADERS and not part.shader.node.mute]
+    if not known:
         notes.add(
             f"The material {material.name!r} has no shader at its output that this engine supports; the default "
             "material is used"
         )
         return Material(index=material.pass_index)
-    for sentence in passed_over.of_material(material, node):
+    for sentence in passed_over.of_material(material, [part.shader for part in known]):
         notes.add(sentence)
-    fields, make = _SHADERS[node.type]
-    plain = {name: node.inputs[name].default_value for name in fields}
+    made = [_made(part.shader, material, notes, own) for part in known]
+    if len(made) > 1:
+        notes.add(
+            f"The material {material.name!r} mixes shaders, which this engine draws as one with their mean settings"
+        )
+        sent = mean_of(shader).surface.emission
+        sent = finite_radiance(sent.value, f"The material {material.name!r}", notes) if sent else BLACK
+        made = [replace(_mean(made, known), emission=sent)]
+    return replace(made[0], index=material.pass_index)
+
+
+def _mean(materials: list[Material], mixed: list[Part]) -> Material:
+    """One material for several that a tree of shaders mixes; those that only emit light do not count."""
+    shares = np.array([part.share * (part.shader.node.type != "EMISSION") for part in mixed])
+    shares = shares if shares.any() else np.ones(len(mixed))
+    numbers = [(material.roughness, material.metallic, material.ior) for material in materials]
+    finish = materials[int(shares.argmax())].finish
+    return Material(*np.average(numbers, axis=0, weights=shares).tolist(), finish=finish)
+
+
+def _made(shader: Shader, material: bpy.types.Material, notes, own: Collection[str]) -> Material:
+    """The material of one of its shaders."""
+    fields, make = _SHADERS[shader.node.type]
+    plain = {name: _value(shader, name) for name in fields}
     if emission := [name for name, field in fields.items() if field == "emission"]:
         sent = finite_radiance(_sent(plain, *emission), f"The material {material.name!r}", notes)
         plain |= dict(zip(emission, (sent, 1.0), strict=True))
     made = make(plain)
-    linked = [name for name, field in fields.items() if node.inputs[name].is_linked and field not in own]
+    linked = [name for name, field in fields.items() if shader.socket(name).is_linked and field not in own]
     if not any(made.emission):
         linked = [name for name in linked if fields[name] != "emission" or "Strength" in name]
     if missing := [name for name in linked if fields[name]]:
@@ -135,7 +168,13 @@ def shading_material(material: bpy.types.Material | None, notes, own: Collection
             f"The material {material.name!r} textures {', '.join(uniform)}, which this engine has once for a material; "
             "the sockets' plain values are used"
         )
-    return replace(made, index=material.pass_index)
+    return made
+
+
+def _value(shader: Shader, name: str):
+    """The plain value of a socket."""
+    value = shader.plain(name).value
+    return value[0] if len(value) == 1 else value
 
 
 def _principled(plain: dict) -> Material:
@@ -177,6 +216,13 @@ def _sent(plain: dict, color: str, strength: str) -> tuple[float, float, float]:
     return tuple(c * plain[strength] for c in plain[color][:3])
 
 
+_DIELECTRIC = (
+    {"Roughness": "roughness", "IOR": ""},
+    lambda plain: Material(plain["Roughness"], ior=_levelled(plain["IOR"], 0.5)),
+)
+#: A surface without a coat.
+_MATT = ({}, lambda plain: Material(roughness=1.0, ior=1.0))
+
 #: shader node type -> its sockets with the field of surfels that replaces each, or "", and a function from their plain
 #: values to a `Material`
 _SHADERS = {
@@ -199,8 +245,15 @@ _SHADERS = {
         },
         _principled,
     ),
-    # without a coat
-    "BSDF_DIFFUSE": ({}, lambda plain: Material(roughness=1.0, ior=1.0)),
+    "BSDF_GLOSSY": ({"Roughness": "roughness"}, lambda plain: Material(plain["Roughness"], 1.0)),
+    "BSDF_METALLIC": ({"Roughness": "roughness"}, lambda plain: Material(plain["Roughness"], 1.0)),
+    "BSDF_GLASS": _DIELECTRIC,
+    "BSDF_REFRACTION": _DIELECTRIC,
+    "BSDF_DIFFUSE": _MATT,
+    "BSDF_TRANSLUCENT": _MATT,
+    "SUBSURFACE_SCATTERING": _MATT,
+    "BSDF_TOON": _MATT,
+    "BSDF_SHEEN": _MATT,
     "EMISSION": (
         {"Color": "emission", "Strength": "emission"},
         lambda plain: Material(roughness=1.0, ior=1.0, emission=_sent(plain, "Color", "Strength")),
@@ -215,11 +268,8 @@ def _levelled(ior: float, level: float) -> float:
 
 
 def output_source(tree: bpy.types.NodeTree, output_type: str, *wanted: str) -> bpy.types.Node | None:
-    """The node of one of the types `wanted` that feeds the tree's active output, also mixed with a Transparent BSDF, or
-    None."""
+    """The node of one of the types `wanted` that feeds the tree's active output, or None."""
     for node in tree.nodes:
         if node.type == output_type and node.is_active_output and (found := linked(node.inputs["Surface"])):
-            mix = transparent_mix(found[0])
-            source = found[0] if mix is None else mix.shader
-            return source if source.type in wanted and not source.mute else None
+            return found[0] if found[0].type in wanted and not found[0].mute else None
     return None

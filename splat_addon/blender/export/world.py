@@ -15,11 +15,10 @@ from ...rendering.upload.atlas import MAX_EDGE
 from ..materials.node_trees import uses_nodes
 from ..materials.texture_images import UnreadableError, fingerprint, linear_pixels, settings_of
 from . import passed_over
-from .shading import MAX_RADIANCE, color_times_strength, finite_radiance
+from .shading import BLACK, MAX_RADIANCE, color_times_strength, finite_radiance
 from .world_shaders import Background, backgrounds
 
 Color = tuple[float, float, float]
-BLACK = (0.0, 0.0, 0.0)
 
 
 class WorldStore:

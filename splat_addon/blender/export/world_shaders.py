@@ -42,23 +42,27 @@ class _Reading(NamedTuple):
     rays: frozenset[str]
     notes: object
 
-    def read(self, socket: bpy.types.NodeSocket, share: float) -> Iterator[Background]:
-        """The backgrounds that feed a socket and are not multiplied by 0."""
+    def read(
+        self, socket: bpy.types.NodeSocket, share: float, followed: tuple[bpy.types.Node, ...] = ()
+    ) -> Iterator[Background]:
+        """The backgrounds that feed a socket and are not multiplied by 0. followed: the nodes that they are mixed
+        into; a ring of them ends."""
         source = linked(socket)
-        if source is None or share == 0:
+        if source is None or share == 0 or source[0] in followed:
             return
         node = source[0]
+        followed = (*followed, node)
         if node.mute:
             if link := passed_through_link(node):
-                yield from self.read(link.from_socket, share)
+                yield from self.read(link.from_socket, share, followed)
         elif node.type == "MIX_SHADER":
             factor, first, second = node.inputs
             part = self._factor(factor)
-            yield from self.read(first, share * (1 - part))
-            yield from self.read(second, share * part)
+            yield from self.read(first, share * (1 - part), followed)
+            yield from self.read(second, share * part, followed)
         elif node.type == "ADD_SHADER":
             for each in node.inputs:
-                yield from self.read(each, share)
+                yield from self.read(each, share, followed)
         elif node.type in ("BACKGROUND", "EMISSION"):
             yield Background(node, share)
         else:

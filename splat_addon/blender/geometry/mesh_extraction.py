@@ -17,18 +17,21 @@ import numpy as np
 
 from ...sampling import Image, Surface, TriangleMesh
 from ..materials.material_surfaces import ATTRIBUTE_TYPES, MeshLayers, Unread, material_surface
+from ..materials.surface_shaders import why_unseen
 
 
 @dataclass(frozen=True, eq=False)
 class ExtractedMesh:
-    """triangles: in the object's own space.
+    """triangles: in the object's own space, without those whose material covers nothing.
     materials: of the object's slots, as in the file, None for an empty slot.
     unread: inputs of these materials that could not be read.
+    unseen: the end of a sentence for each material that covers nothing.
     """
 
     triangles: TriangleMesh
     materials: tuple[bpy.types.Material | None, ...]
     unread: tuple[tuple[bpy.types.Material, Unread], ...] = ()
+    unseen: tuple[str, ...] = ()
 
     @property
     def notes(self) -> list[str]:
@@ -112,7 +115,12 @@ def read_mesh(
         materials=indices,
         surfaces=surfaces,
     )
-    return ExtractedMesh(triangles, tuple(m and m.original for m in slots), tuple(unread))
+    unseen = {k: why for k in used if k < len(slots) and slots[k] and (why := why_unseen(slots[k]))}
+    if unseen:
+        rows = [] if indices is None else np.flatnonzero(~np.isin(indices, list(unseen)))
+        triangles = triangles.with_triangles(np.array(rows, np.int64))
+    said = tuple(f"the material {slots[k].name!r} {why}" for k, why in unseen.items())
+    return ExtractedMesh(triangles, tuple(m and m.original for m in slots), tuple(unread), said)
 
 
 class _NoPixels(dict):

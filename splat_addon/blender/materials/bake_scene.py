@@ -19,10 +19,10 @@ from mathutils import Matrix
 
 from ..geometry.mesh_extraction import slot_materials
 from ..geometry.sources import shown_by
-from .material_surfaces import SHADERS, surface_shader
 from .node_products import linked
 from .node_trees import uses_nodes
 from .shader_mixes import emitted
+from .surface_shaders import SHADERS, surface_shader
 
 #: Pixels along the side of a square.
 SIDE = 2
@@ -104,7 +104,7 @@ class BakeScene:
             del self._made[made:]
             for copy, original in ((self._copies[material], material) for material in materials):
                 if kind == "EMIT":
-                    _restore(copy, surface_shader(original).name)
+                    _restore(copy, original)
 
     def _keep(self, made):
         self._made.append(made)
@@ -140,7 +140,15 @@ class BakeScene:
     def _material(self, original: bpy.types.Material) -> bpy.types.Material:
         if original not in self._copies:
             self._copies[original] = self._keep(original.copy())
+            self._copy_groups(self._copies[original].node_tree)
         return self._copies[original]
+
+    def _copy_groups(self, tree: bpy.types.NodeTree | None) -> None:
+        """Give a copied tree its own groups of shaders, to which nodes may be added."""
+        for node in tree.nodes if tree else ():
+            if node.type == "GROUP" and node.node_tree and any(socket.type == "SHADER" for socket in node.outputs):
+                node.node_tree = self._keep(node.node_tree.copy())
+                self._copy_groups(node.node_tree)
 
     def _object(self, mesh: bpy.types.Mesh, matrix: np.ndarray, asked: _Asked | None = None) -> bpy.types.Object:
         made = self._keep(bpy.data.objects.new(mesh.name, mesh))
@@ -199,7 +207,8 @@ class _Asked(NamedTuple):
 
 def _emit(material: bpy.types.Material, channel: str) -> None:
     """Connect the inputs of that channel, a colour or a number and a strength, to an Emission shader."""
-    tree, shader = material.node_tree, surface_shader(material)
+    found = surface_shader(material)
+    tree, shader = found.node.id_data, found.node
     emission = tree.nodes.new("ShaderNodeEmission")
     sockets = SHADERS[shader.bl_idname][channel] if shader.bl_idname in SHADERS else ()
     if not sockets:
@@ -212,16 +221,15 @@ def _emit(material: bpy.types.Material, channel: str) -> None:
             target.default_value = (*[source.default_value] * 3, 1.0)
         else:
             target.default_value = source.default_value
-    tree.links.new(emission.outputs["Emission"], tree.get_output_node("ALL").inputs["Surface"])
+    tree.links.new(emission.outputs["Emission"], found.into)
 
 
-def _restore(material: bpy.types.Material, shader: str) -> None:
+def _restore(copy: bpy.types.Material, original: bpy.types.Material) -> None:
     """Undo `_emit`."""
-    tree = material.node_tree
-    output = tree.get_output_node("ALL").inputs["Surface"]
-    emission = output.links[0].from_node
-    tree.links.new(tree.nodes[shader].outputs[0], output)
-    tree.nodes.remove(emission)
+    emission, shader = surface_shader(copy), surface_shader(original)
+    tree = emission.node.id_data
+    tree.links.new(tree.nodes[shader.node.name].outputs[0], emission.into)
+    tree.nodes.remove(emission.node)
 
 
 def _cells(image: bpy.types.Image, count: int) -> np.ndarray:

@@ -14,7 +14,8 @@ from mathutils import Matrix
 from ...sampling import Surface
 from ...surfels import OPTIONAL_LAYOUT, Surfels
 from .bake_scene import BakeScene
-from .material_surfaces import SHADERS, Unread, surface_shader
+from .material_surfaces import Unread
+from .surface_shaders import SHADERS, surface_shader
 
 #: Coverage below which a colour is invisible.
 _LEAST_OPACITY = 1e-4
@@ -67,7 +68,7 @@ def baked(surfels: Surfels, what: Bakeable, depsgraph: bpy.types.Depsgraph) -> t
                 good = np.isfinite(values).all(axis=1)
                 missed += int(np.count_nonzero(~good))
                 target[chunk[good]] = values[good] if target.ndim == 2 else values[good, 0]
-    _uncover(arrays["colors"], slots, what)
+    _uncover(arrays, slots, what)
     return replace(surfels, **arrays), missed
 
 
@@ -93,18 +94,23 @@ def _not_reproduced(tree: bpy.types.NodeTree) -> Iterator[str]:
             yield "Particle Info"
 
 
-def _uncover(colors: np.ndarray, slots: np.ndarray, what: Bakeable) -> None:
-    """Divide the baked colours of mixed shaders by their coverage."""
+def _uncover(arrays: dict[str, np.ndarray], slots: np.ndarray, what: Bakeable) -> None:
+    """Divide the baked colours and emission of mixed shaders by their coverage."""
     mixed = {m for m, unread in what.unread if unread.channel == "opacity" and _is_mixed(m)}
-    rows = np.isin(slots, [k for k, material in enumerate(what.materials) if material in mixed])
-    opacity = np.clip(colors[rows, 3:], 0, 1)
-    colors[rows, 3:] = opacity
-    colors[rows, :3] = np.where(opacity > _LEAST_OPACITY, colors[rows, :3] / np.maximum(opacity, _LEAST_OPACITY), 0)
+    colors = arrays["colors"]
+    opacity = np.clip(colors[:, 3:], 0, 1)
+    for channel, weighted in (("opacity", colors[:, :3]), ("emission", arrays.get("emission"))):
+        wanted = {m for m, unread in what.unread if unread.channel == channel and m in mixed}
+        rows = np.isin(slots, [k for k, material in enumerate(what.materials) if material in wanted])
+        if rows.any():
+            share = opacity[rows]
+            weighted[rows] = np.where(share > _LEAST_OPACITY, weighted[rows] / np.maximum(share, _LEAST_OPACITY), 0)
+            colors[rows, 3:] = share
 
 
 def _is_mixed(material: bpy.types.Material) -> bool:
     shader = surface_shader(material)
-    return shader is not None and shader.bl_idname not in SHADERS
+    return shader is not None and shader.node.bl_idname not in SHADERS
 
 
 def _passes(unread) -> dict[tuple[str, str], set[bpy.types.Material]]:

@@ -15,10 +15,11 @@ import numpy as np
 from ...sampling import Channel, Image, NormalMap, Surface, Texture, VertexColors
 from ...sampling.attributes.surfaces import ALPHA, RED
 from ..geometry.attributes import has_surfels_beside_faces
-from . import node_products
-from .node_products import AttributeSource, ImageSource, Product, constant, linked, product
+from .mean_surfaces import mean_of
+from .node_products import AttributeSource, ImageSource, Product, linked, outer, product
 from .node_trees import uses_nodes
 from .shader_mixes import channels
+from .surface_shaders import METALS, SHADERS, Shader, surface_shader, why_unseen
 from .texture_images import UnreadableError, linear_pixels
 from .texture_placement import placement, uv_layer
 from .transparent_mixes import TransparentMix, transparent_mix
@@ -44,21 +45,6 @@ CHANNEL_NAMES = {
     "emission": "emission",
     "normal_map": "normal",
 }
-
-#: shader node -> field of `Surface` -> its sockets, which are multiplied
-SHADERS = {
-    "ShaderNodeBsdfPrincipled": {
-        "color": ("Base Color",),
-        "opacity": ("Alpha",),
-        "roughness": ("Roughness",),
-        "metallic": ("Metallic",),
-        "emission": ("Emission Color", "Emission Strength"),
-        "normal_map": ("Normal",),
-    },
-    "ShaderNodeBsdfDiffuse": {"color": ("Color",), "normal_map": ("Normal",)},
-    "ShaderNodeEmission": {"emission": ("Color", "Strength")},
-}
-
 
 #: data type of an attribute that can be used as a colour -> its property, and its number of components
 ATTRIBUTE_TYPES = {
@@ -139,18 +125,26 @@ def material_surface(material: bpy.types.Material | None, layers: MeshLayers) ->
     shader = surface_shader(material)
     if (found := _behind_holes(shader, layers)) is not None:
         return found, []
-    if shader is None or shader.bl_idname not in SHADERS:
-        if shader is None:
-            return plain, [Unread("color", "no shader at its output")]
-        return plain, [Unread(channel, f"a {shader.bl_label} node") for channel in channels(shader)]
-    return _Reader(shader, layers).surface()
+    if why_unseen(material) is not None:
+        return Surface(Channel((0.0, 0.0, 0.0, 0.0))), []
+    if shader is None:
+        return plain, [Unread("color", "no shader at its output")]
+    if shader.node.bl_idname in SHADERS:
+        return _Reader(shader, layers).surface()
+    mean = mean_of(shader)
+    if mean.only is not None:
+        surface, unread = _Reader(mean.only, layers).surface()
+        if not unread:
+            return surface, []
+    unread = [Unread(channel, f"a {shader.node.bl_label} node") for channel in channels(shader) if mean.unsure]
+    return mean.surface, unread
 
 
-def _behind_holes(shader: bpy.types.Node | None, layers: MeshLayers) -> Surface | None:
+def _behind_holes(shader: Shader | None, layers: MeshLayers) -> Surface | None:
     """The surface of a shader mixed with a Transparent BSDF; None for anything else, or if not all of it can be read,
     so that the mix is baked as a whole."""
     mix = transparent_mix(shader)
-    if mix is None or "color" not in SHADERS.get(mix.shader.bl_idname, ()):
+    if mix is None or "color" not in SHADERS.get(mix.shader.node.bl_idname, ()):
         return None
     surface, unread = _Reader(mix.shader, layers, mix).surface()
     return None if unread else surface
@@ -159,14 +153,11 @@ def _behind_holes(shader: bpy.types.Node | None, layers: MeshLayers) -> Surface 
 def plain_color(material: bpy.types.Material) -> tuple[tuple[float, float, float, float], bool]:
     """The colour and opacity of a material without its textures, and whether it has textures."""
     shader = surface_shader(material) if uses_nodes(material) else None
-    sockets = SHADERS.get(shader.bl_idname) if shader is not None else None
-    if sockets is None:
-        return tuple(material.diffuse_color), False
-    if "color" not in sockets:
-        return (0.0, 0.0, 0.0, 1.0), False
-    used = [shader.inputs[sockets[name][0]] for name in ("color", "opacity") if name in sockets]
-    color, *opacity = (constant(socket).value for socket in used)
-    return (*color, *(opacity[0] if opacity else (1.0,))), any(linked(socket) is not None for socket in used)
+    if shader is None:
+        is_unseen = why_unseen(material) is not None
+        return (0.0, 0.0, 0.0, 0.0) if is_unseen else tuple(material.diffuse_color), False
+    mean = mean_of(shader)
+    return mean.surface.color.value, not mean.unsure.isdisjoint(("color", "opacity"))
 
 
 def _bare_surface(layers: MeshLayers) -> Surface:
@@ -178,9 +169,9 @@ def _bare_surface(layers: MeshLayers) -> Surface:
 class _Reader:
     """Reads one shader node. mix: with a Transparent BSDF, if it is in one."""
 
-    def __init__(self, shader: bpy.types.ShaderNode, layers: MeshLayers, mix: TransparentMix | None = None):
+    def __init__(self, shader: Shader, layers: MeshLayers, mix: TransparentMix | None = None):
         self._shader, self._layers, self._mix = shader, layers, mix
-        self._sockets = SHADERS[shader.bl_idname]
+        self._sockets = SHADERS[shader.node.bl_idname]
         self._unread: list[Unread] = []
 
     def surface(self) -> tuple[Surface, list[Unread]]:
@@ -189,6 +180,8 @@ class _Reader:
             alpha = self._in_mix(alpha)
         color, opacity = self._color(alpha) if "color" in self._sockets else (Channel((0.0, 0.0, 0.0, 1.0)), None)
         rest = {name: self._channel(name) for name in ("roughness", "metallic", "emission") if name in self._sockets}
+        if self._shader.node.bl_idname in METALS:
+            rest["metallic"] = Channel((1.0,))
         return Surface(color, opacity, normal_map=self._normal_map(), **rest), self._unread
 
     def _in_mix(self, alpha: Product) -> Product:
@@ -227,11 +220,11 @@ class _Reader:
         return Channel(read.value * (3 // len(read.value)) if name == "emission" else read.value, factors)
 
     def _product(self, name: str) -> Product:
-        sockets = [self._shader.inputs[socket] for socket in self._sockets[name]]
+        first, *others = self._sockets[name]
         try:
-            read = product(sockets[0])
-            for socket in sockets[1:]:
-                read = read * product(socket)
+            read = self._shader.product(first)
+            for socket in others:
+                read = read * self._shader.product(socket)
         except UnreadableError as error:
             return self._plain(name, error)
         return read
@@ -240,7 +233,7 @@ class _Reader:
         self._unread.append(Unread(name, str(error)))
         read = Product((1.0,))
         for socket in self._sockets[name]:
-            read = read * constant(self._shader.inputs[socket])
+            read = read * self._shader.plain(socket)
         return read
 
     def _factor(self, source: ImageSource | AttributeSource, uses_alpha: bool) -> Texture | VertexColors:
@@ -253,26 +246,29 @@ class _Reader:
 
     def _normal_map(self) -> NormalMap | None:
         sockets = self._sockets.get("normal_map")
-        source = linked(self._shader.inputs[sockets[0]]) if sockets else None
+        if not sockets:
+            return None
+        socket, groups = outer(self._shader.node.inputs[sockets[0]], self._shader.groups)
+        source = linked(socket)
         if source is None:
             return None
         try:
-            return self._read_normal_map(source[0])
+            return self._read_normal_map(source[0], groups)
         except UnreadableError as error:
             self._unread.append(Unread("normal_map", str(error)))
             return None
 
-    def _read_normal_map(self, node: bpy.types.Node) -> NormalMap | None:
+    def _read_normal_map(self, node: bpy.types.Node, groups: tuple[bpy.types.Node, ...]) -> NormalMap | None:
         if node.bl_idname != "ShaderNodeNormalMap" or node.mute:
             raise UnreadableError(f"a {'muted ' if node.mute else ''}{node.bl_label} node")
         if node.space not in _SPACES or getattr(node, "convention", "OPENGL") != "OPENGL":
             raise UnreadableError(f"a normal map in {node.space.replace('_', ' ').lower()} space, or of DirectX")
-        strength = node.inputs["Strength"]
+        strength, _ = outer(node.inputs["Strength"], groups)
         if linked(strength) is not None:
             raise UnreadableError("a normal map whose strength is linked")
         if linked(node.inputs["Color"]) is None:
             return None
-        read = product(node.inputs["Color"])
+        read = product(node.inputs["Color"], groups)
         color = Channel(read.value, tuple(self._factor(source, False) for source in read.sources))
         layer = self._layers.uv(uv_layer(node.uv_map, self._layers.mesh)) if node.space == "TANGENT" else 0
         return NormalMap(color, max(strength.default_value, 0.0), layer, node.space)
@@ -292,10 +288,3 @@ def default_color_layer(mesh: bpy.types.Mesh) -> str | None:
         return None
     name = mesh.attributes.default_color_name or mesh.attributes.active_color_name
     return name if name in mesh.color_attributes else None
-
-
-def surface_shader(material: bpy.types.Material) -> bpy.types.Node | None:
-    """The node at the surface of the active output."""
-    output = material.node_tree.get_output_node("ALL")
-    source = node_products.linked(output.inputs["Surface"]) if output else None
-    return source[0] if source else None

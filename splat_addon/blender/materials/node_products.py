@@ -110,9 +110,27 @@ class Product:
         return Product((1.0,) * count, (replace(source, functions=functions, makes_color=makes_color),))
 
 
-def product(socket: Socket) -> Product:
-    """A colour or number socket as a product. Raises UnreadableError."""
-    return _Reading().product(socket)
+def product(socket: Socket, groups: tuple[Node, ...] = ()) -> Product:
+    """A colour or number socket as a product. groups: the group nodes around its node, the innermost last.
+
+    Raises UnreadableError.
+    """
+    return _Reading(groups).product(socket)
+
+
+def outer(socket: Socket, groups: tuple[Node, ...]) -> tuple[Socket, tuple[Node, ...]]:
+    """The socket that supplies the value of one inside groups: that of a group's node where the group passes it in.
+    Also the groups around that socket."""
+    while groups and (source := linked(socket)) and source[0].bl_idname == "NodeGroupInput":
+        socket, groups = _input(groups[-1], source[1]), groups[:-1]
+    return socket, groups
+
+
+def within(group: Node, output: str) -> Socket | None:
+    """The socket inside a group that supplies one of its outputs; None if the group has no output node."""
+    ends = (n for n in group.node_tree.nodes if n.bl_idname == "NodeGroupOutput" and n.is_active_output)
+    end = next(ends, None)
+    return end and _input(end, output)
 
 
 #: Maximum length of a chain of nodes: far more than anyone uses, and within Python's own limit.
@@ -127,10 +145,10 @@ class _Reading:
     last; the contents of a group are read once for each of its users.
     """
 
-    def __init__(self):
+    def __init__(self, groups: tuple[Node, ...] = ()):
         self._read: dict[tuple, Product] = {}
         self._followed: list[tuple] = []
-        self._groups: list[Node] = []
+        self._groups: list[Node] = list(groups)
 
     def product(self, socket: Socket) -> Product:
         source = linked(socket)
@@ -165,13 +183,12 @@ class _Reading:
 
     def _inside(self, group: Node, output: str) -> Product:
         """The output of a group."""
-        ends = (n for n in group.node_tree.nodes if n.bl_idname == "NodeGroupOutput" and n.is_active_output)
-        end = next(ends, None)
-        if end is None:
+        inner = within(group, output)
+        if inner is None:
             raise UnreadableError(f"the group {group.node_tree.name!r}, which has no output")
         self._groups.append(group)
         try:
-            return self.product(_input(end, output))
+            return self.product(inner)
         finally:
             self._groups.pop()
 

@@ -8,11 +8,10 @@ transmitted share, and colours are weighted by their shader's coverage.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import bpy
 
-from .node_products import linked, passed_through_link
+from .node_products import linked, passed_through_link, within
+from .surface_shaders import CLEAR, Shader, parts
 
 Node = bpy.types.Node
 Tree = bpy.types.NodeTree
@@ -25,31 +24,13 @@ _BLACK, _WHITE = (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)
 #: The emission of a shader is the product of these.
 _EMISSION_SOCKETS = {"EMISSION": ("Color", "Strength"), "BSDF_PRINCIPLED": ("Emission Color", "Emission Strength")}
 
-#: Shaders that transmit everything and cover nothing.
-_CLEAR = ("BSDF_TRANSPARENT", "HOLDOUT")
 
-
-def ends(shader: Node) -> Iterator[Node]:
-    """The leaf shaders of a tree of shaders."""
-    if shader.mute:
-        link = passed_through_link(shader)
-        source = link and linked(link.from_socket)
-        if source:
-            yield from ends(source[0])
-    elif shader.type in ("MIX_SHADER", "ADD_SHADER"):
-        for socket in shader.inputs:
-            source = linked(socket) if socket.type == "SHADER" else None
-            if source:
-                yield from ends(source[0])
-    else:
-        yield shader
-
-
-def channels(shader: Node) -> list[str]:
+def channels(shader: Shader) -> list[str]:
     """The channels of a surface to bake for a tree of shaders."""
-    kinds = [end.type for end in ends(shader)]
-    emits = any(end.type == "EMISSION" or _emits(end) for end in ends(shader))
-    is_clear = any(kind in _CLEAR or kind == "BSDF_PRINCIPLED" for kind in kinds)
+    ends = [part.shader.node for part in parts(shader)]
+    kinds = [end.type for end in ends]
+    emits = any(end.type == "EMISSION" or _emits(end) for end in ends)
+    is_clear = any(kind in CLEAR or kind == "BSDF_PRINCIPLED" for kind in kinds)
     return ["color", *["opacity"] * is_clear, *["emission"] * emits]
 
 
@@ -72,6 +53,8 @@ def _combined(tree: Tree, shader: Node | None, channel: str) -> Given:
     if shader.mute:
         link = passed_through_link(shader)
         return _combined(tree, _source(link.from_socket) if link else None, channel)
+    if shader.type == "GROUP" and shader.node_tree is not None:
+        return _out_of_group(shader, channel)
     if shader.type in ("MIX_SHADER", "ADD_SHADER"):
         first, second = (_combined(tree, _source(s), channel) for s in shader.inputs if s.type == "SHADER")
         if shader.type == "ADD_SHADER":
@@ -80,13 +63,28 @@ def _combined(tree: Tree, shader: Node | None, channel: str) -> Given:
     return _ENDS[channel](tree, shader)
 
 
+def _out_of_group(group: Node, channel: str) -> Given:
+    """A new output of a group, which belongs to this node alone, for its first shader."""
+    shader = next(socket for socket in group.outputs if socket.type == "SHADER")
+    inner = within(group, shader.identifier)
+    if inner is None:
+        return _BLACK
+    tree = group.node_tree
+    found = _combined(tree, _source(inner), channel)
+    if not isinstance(found, Socket):
+        return found
+    added = tree.interface.new_socket(channel, in_out="OUTPUT", socket_type="NodeSocketColor")
+    tree.links.new(found, within(group, added.identifier))
+    return next(socket for socket in group.outputs if socket.identifier == added.identifier)
+
+
 def _source(socket: Socket) -> Node | None:
     source = linked(socket)
     return source and source[0]
 
 
 def _color(tree: Tree, end: Node) -> Given:
-    if end.type in _CLEAR or end.type == "EMISSION":
+    if end.type in CLEAR or end.type == "EMISSION":
         return _BLACK
     if end.type == "BSDF_PRINCIPLED":
         return _mixed(tree, "MULTIPLY", _given(end.inputs["Base Color"]), _given(end.inputs["Alpha"]))
@@ -97,7 +95,7 @@ def _color(tree: Tree, end: Node) -> Given:
 def _let_through(tree: Tree, end: Node) -> Given:
     if end.type == "BSDF_PRINCIPLED":
         return _mixed(tree, "SUBTRACT", _WHITE, _given(end.inputs["Alpha"]))
-    return _WHITE if end.type in _CLEAR else _BLACK
+    return _WHITE if end.type in CLEAR else _BLACK
 
 
 def _emission(tree: Tree, end: Node) -> Given:

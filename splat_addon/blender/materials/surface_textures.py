@@ -13,9 +13,11 @@ import numpy as np
 from ...rendering import NormalTexture, SurfaceTexture
 from ...sampling import Image, Surface, normal_map_texture
 from ...surfels import OPAQUE
-from .material_surfaces import SHADERS, MeshLayers, surface_shader
-from .node_products import ImageSource, linked, product
+from .material_surfaces import MeshLayers
+from .mean_surfaces import mean_of
+from .node_products import ImageSource, linked
 from .node_trees import uses_nodes
+from .surface_shaders import SHADERS, surface_shader
 from .texture_images import UnreadableError
 from .transparent_mixes import transparent_mix
 
@@ -97,11 +99,14 @@ class TextureStore:
     def _read(self, material: bpy.types.Material | None) -> SurfaceTexture | None:
         shader = surface_shader(material) if material is not None and uses_nodes(material) else None
         mix = transparent_mix(shader)
-        shader = shader if mix is None else mix.shader
-        sockets = SHADERS.get(shader.bl_idname, {}).get("color") if shader is not None else None
+        if mix is not None:
+            shader = mix.shader
+        elif shader is not None and shader.node.bl_idname not in SHADERS:
+            shader = mean_of(shader).only
+        sockets = SHADERS.get(shader.node.bl_idname, {}).get("color") if shader is not None else None
         if sockets is None:
             return None
-        read = product(shader.inputs[sockets[0]])
+        read = shader.product(sockets[0])
         if (
             len(read.sources) != 1
             or not isinstance(read.sources[0], ImageSource)
@@ -110,8 +115,7 @@ class TextureStore:
             return None
         (source,) = read.sources
         self._forget_if_painted(source.node.image)
-        alpha = shader.inputs.get("Alpha")
-        uses_alpha = alpha is not None and linked(alpha) == (source.node, "Alpha")
+        uses_alpha = "Alpha" in shader.node.inputs and linked(shader.socket("Alpha")) == (source.node, "Alpha")
         uses_alpha |= mix is not None and mix.is_alpha_of(source.node)
         return SurfaceTexture(MeshLayers(None, _images=self._images).image(source, uses_alpha), tuple(read.value))
 

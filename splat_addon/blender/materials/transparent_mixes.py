@@ -10,51 +10,40 @@ from dataclasses import dataclass
 
 import bpy
 
-from .node_products import Product, linked, product
-
-#: How far from white a Transparent BSDF's colour may be: a tinted one filters what is behind it.
-_WHITE_ENOUGH = 1e-3
+from .node_products import Product, linked, outer, product
+from .surface_shaders import Shader
 
 
 @dataclass(frozen=True, eq=False)
 class TransparentMix:
-    """shader: what covers. factor: the socket of its share. is_first: whether the shader is the first of the two, whose
-    share is 1 minus the factor."""
+    """shader: what covers. mix: the Mix Shader. is_first: whether the shader is the first of the two, whose share is 1
+    minus the factor."""
 
-    shader: bpy.types.Node
-    factor: bpy.types.NodeSocket
+    shader: Shader
+    mix: Shader
     is_first: bool
 
     def opacity(self) -> Product:
         """The shader's share. Raises UnreadableError."""
-        share = product(self.factor)
+        share = product(self.mix.node.inputs[0], self.mix.groups)
         if not share.sources:
             share = share.mapped(_clamped, "Mix Shader")
         return share.mapped(_rest, "Mix Shader") if self.is_first else share
 
     def is_alpha_of(self, node: bpy.types.Node) -> bool:
         """Whether the share is the alpha of an Image Texture node."""
-        return not self.is_first and linked(self.factor) == (node, "Alpha")
+        return not self.is_first and linked(outer(self.mix.node.inputs[0], self.mix.groups)[0]) == (node, "Alpha")
 
 
-def transparent_mix(shader: bpy.types.Node | None) -> TransparentMix | None:
-    """The mix that a node is, or None. A muted node is none, and neither is a mix of two transparent shaders."""
-    if shader is None or shader.bl_idname != "ShaderNodeMixShader" or shader.mute:
+def transparent_mix(shader: Shader | None) -> TransparentMix | None:
+    """The mix that a shader is, or None. A muted node is none, and neither is a mix of two transparent shaders."""
+    if shader is None or shader.node.bl_idname != "ShaderNodeMixShader" or shader.node.mute:
         return None
-    factor, *sockets = shader.inputs
-    sources = [linked(socket) for socket in sockets]
-    nodes = [source and source[0] for source in sources]
-    clear = [_is_clear(node) for node in nodes]
-    if None in nodes or clear[0] == clear[1]:
+    mixed = [shader.feeding(socket) for socket in shader.node.inputs[1:]]
+    if None in mixed or mixed[0].is_clear == mixed[1].is_clear:
         return None
-    return TransparentMix(nodes[clear.index(False)], factor, is_first=not clear[0])
-
-
-def _is_clear(node: bpy.types.Node | None) -> bool:
-    if node is None or node.bl_idname != "ShaderNodeBsdfTransparent" or node.mute:
-        return False
-    color = node.inputs["Color"]
-    return linked(color) is None and all(abs(1 - channel) <= _WHITE_ENOUGH for channel in color.default_value[:3])
+    is_first = not mixed[0].is_clear
+    return TransparentMix(mixed[0 if is_first else 1], shader, is_first)
 
 
 def _clamped(values):

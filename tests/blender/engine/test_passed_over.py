@@ -11,7 +11,7 @@ from splat_addon.blender.engine.render_passes import RENDER_PASSES, absent_passe
 from splat_addon.blender.export import passed_over
 from splat_addon.blender.export.scene import Notes
 from splat_addon.blender.export.shading import shading_material
-from splat_addon.blender.materials.material_surfaces import SHADERS
+from splat_addon.blender.materials.surface_shaders import SHADERS
 
 #: Sockets that only matter if another one is above 0: prefix -> the other socket.
 LEADERS = {

@@ -407,3 +407,20 @@ def test_images_that_polygons_show_at_corners_alone_are_named(channel, look, pic
     told = said()
     assert (f"Cube has an image for its {name}, of which polygons show only" in told) == (name is not None)
     assert ("at their corners" in told) == (name is not None)
+
+
+@pytest.mark.parametrize("kind", ["VolumeScatter", "BsdfTransparent", "Holdout"])
+def test_a_mesh_whose_material_covers_nothing_is_not_drawn(kind, look, picture):
+    bpy.ops.mesh.primitive_cube_add(size=2)
+    material = principled()
+    tree = material.node_tree
+    tree.nodes.remove(tree.nodes["Principled BSDF"])
+    output = tree.get_output_node("ALL").inputs["Volume" if kind == "VolumeScatter" else "Surface"]
+    tree.links.new(tree.nodes.new(f"ShaderNode{kind}").outputs[0], output)
+    bpy.context.object.data.materials.append(material)
+    assert not picture().any()
+    if kind == "VolumeScatter":
+        assert (
+            "The material 'material' has no surface but a volume, which is not drawn"
+            in (final_render.last_frame_stats["notes"])
+        )

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Shows a tree of mixed and added shaders as one surface: the mean of their colours, each with its share.
+
+The rules are those of `shader_mixes`, with numbers instead of nodes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...sampling import Channel, Surface
+from .node_products import Product
+from .surface_shaders import CLEAR, SHADERS, Part, Shader, parts
+from .texture_images import UnreadableError
+
+#: Opacity below which a colour is invisible.
+_LEAST_OPACITY = 1e-4
+
+
+@dataclass(frozen=True, eq=False)
+class Mean:
+    """surface: of plain numbers. unsure: its channels that depend on more than numbers. only: the shader that alone is
+    left of a tree, which can be read by itself."""
+
+    surface: Surface
+    unsure: frozenset[str]
+    only: Shader | None
+
+
+def mean_of(shader: Shader) -> Mean:
+    """What a tree of shaders looks like."""
+    mixed = list(parts(shader))
+    if len(mixed) == 1 and mixed[0].is_sure and mixed[0].share == 1 and mixed[0].shader.node.bl_idname in SHADERS:
+        only = mixed[0].shader
+    else:
+        only = None
+    unsure: set[str] = set() if all(part.is_sure for part in mixed) else {"color", "opacity", "emission"}
+    color, emission, through = np.zeros(3), np.zeros(3), 0.0
+    for part in mixed:
+        opacity = _value(part, "opacity", 1.0, unsure)[0]
+        through += part.share * (1 - opacity)
+        color += part.share * opacity * _value(part, "color", 0.8, unsure)
+        emission += part.share * _value(part, "emission", 0.0, unsure)
+    opacity = float(np.clip(1 - through, 0, 1))
+    color, emission = (part / opacity if opacity > _LEAST_OPACITY else np.zeros(3) for part in (color, emission))
+    sent = Channel(tuple(emission.tolist())) if emission.any() else None
+    return Mean(Surface(Channel((*color.tolist(), opacity)), emission=sent), frozenset(unsure), only)
+
+
+def _value(part: Part, channel: str, default: float, unsure: set[str]) -> np.ndarray:
+    """(3,) plain value of a channel of a shader; its name goes into `unsure` if more than a number feeds it.
+
+    default: of shaders that lack it.
+    """
+    node = part.shader.node
+    if node.type in CLEAR or (channel == "color" and node.type == "EMISSION"):
+        return np.zeros(3)
+    names = SHADERS.get(node.bl_idname, {}).get(channel, ())
+    if not names and channel == "color":
+        names = [name for name in ("Color", "Base Color") if name in node.inputs][:1]
+    read = Product((default,) if not names else (1.0,))
+    for name in names:
+        try:
+            factor = part.shader.product(name)
+            is_plain = not factor.sources
+        except UnreadableError:
+            is_plain = False
+        if not is_plain:
+            unsure.add(channel)
+            factor = part.shader.plain(name)
+        read = read * factor
+    return np.broadcast_to(np.array(read.value, np.float64), 3)

@@ -1,0 +1,177 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Finds the shader at a material's output, also inside node groups, and the shaders that it mixes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import bpy
+
+from ...sampling.attributes.surfaces import LUMINANCE
+from .node_products import MAX_CHAIN, Product, constant, linked, outer, passed_through_link, product, within
+from .node_trees import uses_nodes
+from .texture_images import UnreadableError
+
+Node = bpy.types.Node
+Socket = bpy.types.NodeSocket
+
+_GLOSSY = {"color": ("Color",), "roughness": ("Roughness",), "normal_map": ("Normal",)}
+
+#: shader node -> field of `Surface` -> its sockets, which are multiplied
+SHADERS = {
+    "ShaderNodeBsdfPrincipled": {
+        "color": ("Base Color",),
+        "opacity": ("Alpha",),
+        "roughness": ("Roughness",),
+        "metallic": ("Metallic",),
+        "emission": ("Emission Color", "Emission Strength"),
+        "normal_map": ("Normal",),
+    },
+    "ShaderNodeBsdfDiffuse": {"color": ("Color",), "normal_map": ("Normal",)},
+    "ShaderNodeEmission": {"emission": ("Color", "Strength")},
+    "ShaderNodeBsdfAnisotropic": _GLOSSY,
+    "ShaderNodeBsdfMetallic": {"color": ("Base Color",), "roughness": ("Roughness",), "normal_map": ("Normal",)},
+    "ShaderNodeBsdfGlass": _GLOSSY,
+    "ShaderNodeBsdfRefraction": _GLOSSY,
+    "ShaderNodeBsdfTranslucent": {"color": ("Color",), "normal_map": ("Normal",)},
+    "ShaderNodeSubsurfaceScattering": {"color": ("Color",), "normal_map": ("Normal",)},
+    "ShaderNodeBsdfToon": {"color": ("Color",), "normal_map": ("Normal",)},
+    "ShaderNodeBsdfSheen": {"color": ("Color",), "normal_map": ("Normal",)},
+}
+
+#: Shader nodes that are metals.
+METALS = ("ShaderNodeBsdfAnisotropic", "ShaderNodeBsdfMetallic")
+
+#: Shaders that let everything through and cover nothing.
+CLEAR = ("BSDF_TRANSPARENT", "HOLDOUT")
+
+#: How far from white a Transparent BSDF's colour may be: a tinted one filters what is behind it.
+_WHITE_ENOUGH = 1e-3
+
+
+@dataclass(frozen=True)
+class Shader:
+    """A shader node. into: the socket that it feeds. groups: the group nodes around it, the innermost last."""
+
+    node: Node
+    into: Socket
+    groups: tuple[Node, ...] = ()
+
+    def socket(self, name: str) -> Socket:
+        """The socket that supplies the value of an input: of a group if the group passes it in."""
+        return outer(self.node.inputs[name], self.groups)[0]
+
+    def product(self, name: str) -> Product:
+        """An input as a product. Raises UnreadableError."""
+        return product(self.node.inputs[name], self.groups)
+
+    def plain(self, name: str) -> Product:
+        """The value of an input without what is linked to it."""
+        read = constant(self.socket(name))
+        number = self.node.inputs[name].type == "VALUE"
+        return read.weighted(LUMINANCE) if number else Product(read.value * (3 // len(read.value)))
+
+    @property
+    def is_clear(self) -> bool:
+        """Whether it lets everything through unchanged."""
+        if self.node.bl_idname != "ShaderNodeBsdfTransparent" or self.node.mute:
+            return False
+        return linked(self.socket("Color")) is None and all(
+            abs(1 - channel) <= _WHITE_ENOUGH for channel in self.plain("Color").value
+        )
+
+    def feeding(self, socket: Socket) -> Shader | None:
+        """The shader that feeds one of its sockets."""
+        return shader_at(socket, self.groups)
+
+
+def surface_shader(material: bpy.types.Material) -> Shader | None:
+    """The shader at the surface of the active output."""
+    output = material.node_tree.get_output_node("ALL")
+    return shader_at(output.inputs["Surface"]) if output else None
+
+
+def shader_at(socket: Socket, groups: tuple[Node, ...] = ()) -> Shader | None:
+    """The shader that feeds a socket, which is in the innermost of `groups`."""
+    for _ in range(MAX_CHAIN):
+        socket, groups = outer(socket, groups)
+        source = linked(socket)
+        if source is None:
+            return None
+        node, output = source
+        if node.bl_idname != "ShaderNodeGroup" or node.node_tree is None or node.mute:
+            return Shader(node, socket, groups)
+        inner = within(node, output)
+        if inner is None:
+            return None
+        socket, groups = inner, (*groups, node)
+    return None
+
+
+def why_unseen(material: bpy.types.Material) -> str | None:
+    """The end of a sentence about a material that covers nothing, so that its faces are not drawn."""
+    if not uses_nodes(material):
+        return None
+    shader = surface_shader(material)
+    if shader is None:
+        output = material.node_tree.get_output_node("ALL")
+        has_volume = output is not None and linked(output.inputs["Volume"]) is not None
+        return "has no surface but a volume, which is not drawn" if has_volume else None
+    if shader.node.mute or shader.node.type not in CLEAR:
+        return None
+    if shader.is_clear:
+        return "is a Transparent BSDF, through which everything is seen"
+    if shader.node.type == "HOLDOUT":
+        return "is a Holdout, through which this engine shows what lies behind"
+    return "is a tinted Transparent BSDF, through which this engine shows everything untinted"
+
+
+@dataclass(frozen=True)
+class Part:
+    """A shader in a tree of mixed and added ones. share: by which it is multiplied. is_sure: whether that is a
+    constant."""
+
+    shader: Shader
+    share: float
+    is_sure: bool
+
+
+def parts(
+    shader: Shader, share: float = 1.0, is_sure: bool = True, followed: tuple[Shader, ...] = ()
+) -> Iterator[Part]:
+    """The shaders that a tree of shaders mixes and adds, without those whose share is 0.
+
+    followed: the shaders that this one is mixed into; a ring of them ends.
+    """
+    node = shader.node
+    if (is_sure and share == 0) or shader in followed:
+        return
+    if node.mute:
+        link = passed_through_link(node)
+        sockets = [(link.from_socket, share, is_sure)] if link else []
+    elif node.type == "ADD_SHADER":
+        sockets = [(socket, share, is_sure) for socket in node.inputs]
+    elif node.type == "MIX_SHADER":
+        factor, is_constant = _factor(shader)
+        shares = (share * (1 - factor), share * factor)
+        sockets = [(s, part, is_sure and is_constant) for s, part in zip(node.inputs[1:], shares, strict=True)]
+    else:
+        yield Part(shader, share, is_sure)
+        return
+    for socket, part, sure in sockets:
+        found = shader.feeding(socket)
+        if found is not None:
+            yield from parts(found, part, sure, (*followed, shader))
+
+
+def _factor(mix: Shader) -> tuple[float, bool]:
+    """The factor of a Mix Shader, 0 to 1, and whether it is a constant; if not, its socket's value."""
+    socket = mix.node.inputs[0]
+    try:
+        read = product(socket, mix.groups)
+    except UnreadableError:
+        read = None
+    is_constant = read is not None and not read.sources
+    value = read.value[0] if is_constant else socket.default_value
+    return min(max(value, 0.0), 1.0), is_constant

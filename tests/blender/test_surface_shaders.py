@@ -1,0 +1,221 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Shaders other than Principled, also in groups and mixes, keep their colour and shine, or are said to be left out."""
+
+import bpy
+import numpy as np
+import pytest
+
+from splat_addon.blender.export.scene import Notes
+from splat_addon.blender.export.shading import shading_material
+from splat_addon.blender.materials.material_surfaces import MeshLayers, material_surface
+
+RED, BLUE = (0.8, 0.1, 0.1, 1), (0.1, 0.2, 0.9, 1)
+
+
+class Made:
+    """A square's material, which has an output node only, and what the add-on reads from it."""
+
+    def __init__(self, square):
+        self.square = square
+        self.material = bpy.data.materials.new("made")
+        if self.material.node_tree is None:
+            self.material.use_nodes = True
+        self.tree = self.material.node_tree
+        for node in list(self.tree.nodes):
+            if node.type != "OUTPUT_MATERIAL":
+                self.tree.nodes.remove(node)
+        square.data.materials.append(self.material)
+        self.notes = Notes()
+
+    def add(self, kind, tree=None, **values):
+        node = (tree or self.tree).nodes.new(kind)
+        for name, value in values.items():
+            node.inputs[name.replace("_", " ")].default_value = value
+        return node
+
+    def mix(self, kind, first, second, factor=None, tree=None):
+        node = (tree or self.tree).nodes.new(kind)
+        sockets = [socket for socket in node.inputs if socket.type == "SHADER"]
+        for shader, socket in zip((first, second), sockets, strict=True):
+            node.id_data.links.new(shader.outputs[0], socket)
+        if factor is not None:
+            node.inputs[0].default_value = factor
+        return node
+
+    def show(self, shader, output="Surface"):
+        self.tree.links.new(shader.outputs[0], self.tree.get_output_node("ALL").inputs[output])
+        return self
+
+    def group(self, fill):
+        """Add a group with a colour and a roughness as inputs; fill(tree, colour, roughness) returns its shader."""
+        inner = bpy.data.node_groups.new("paint", "ShaderNodeTree")
+        for name, kind in (("Tint", "Color"), ("Gloss", "Float")):
+            inner.interface.new_socket(name, in_out="INPUT", socket_type=f"NodeSocket{kind}")
+        inner.interface.new_socket("Shader", in_out="OUTPUT", socket_type="NodeSocketShader")
+        start, end = inner.nodes.new("NodeGroupInput"), inner.nodes.new("NodeGroupOutput")
+        inner.links.new(fill(inner, start.outputs[0], start.outputs[1]).outputs[0], end.inputs[0])
+        node = self.tree.nodes.new("ShaderNodeGroup")
+        node.node_tree = inner
+        node.inputs["Tint"].default_value, node.inputs["Gloss"].default_value = RED, 0.25
+        return node
+
+    @property
+    def surface(self):
+        return material_surface(self.material, MeshLayers(self.square.data))
+
+    @property
+    def color(self):
+        surface, unread = self.surface
+        assert not unread
+        return surface.color.value
+
+    @property
+    def shaded(self):
+        return shading_material(self.material, self.notes)
+
+    @property
+    def said(self):
+        self.notes = Notes()
+        shading_material(self.material, self.notes)
+        return self.notes.sentences()
+
+
+@pytest.fixture
+def made(add_square):
+    return Made(add_square())
+
+
+def painted(tree, color, roughness):
+    node = tree.nodes.new("ShaderNodeBsdfPrincipled")
+    tree.links.new(color, node.inputs["Base Color"])
+    tree.links.new(roughness, node.inputs["Roughness"])
+    return node
+
+
+@pytest.mark.parametrize(
+    ("kind", "roughness", "metallic", "said"),
+    [
+        ("Glossy", 0.3, 1, None),
+        ("Metallic", 0.3, 1, "a metal"),
+        ("Glass", 0.3, 0, "an opaque"),
+        ("Refraction", 0.3, 0, "an opaque"),
+        ("Translucent", 1, 0, "a matt"),
+        ("Toon", 1, 0, "a matt"),
+    ],
+)
+def test_a_shader_has_its_colour_and_shine_and_says_what_it_lacks(kind, roughness, metallic, said, made):
+    made.show(made.add(f"ShaderNodeBsdf{kind}"))
+    inputs = made.tree.get_output_node("ALL").inputs["Surface"].links[0].from_node.inputs
+    inputs[0].default_value = RED
+    if "Roughness" in inputs:
+        inputs["Roughness"].default_value = 0.3
+    assert np.allclose(made.color, RED)
+    assert np.allclose((made.shaded.roughness, made.shaded.metallic), (roughness, metallic))
+    assert [sentence.partition(" draws as ")[2][: len(said or "")] for sentence in made.said] == (
+        [said] if said else []
+    )
+
+
+def test_a_shader_in_a_group_takes_the_group_s_values(made):
+    made.show(made.group(painted))
+    assert np.allclose(made.color, RED)
+    assert made.shaded.roughness == 0.25 and made.said == []
+
+
+def test_a_group_behind_holes_covers_its_share(made):
+    group = made.group(painted)
+    made.show(made.mix("ShaderNodeMixShader", made.add("ShaderNodeBsdfTransparent"), group, 0.25))
+    assert np.allclose(made.color, (*RED[:3], 0.25))
+    assert made.shaded.roughness == 0.25
+
+
+@pytest.mark.parametrize("is_mixed", [False, True])
+def test_a_group_is_baked_and_left_as_it_was(is_mixed, made, convert, surfels_of):
+    """The group's colour comes from the object's coordinates, times its input."""
+
+    def fill(tree, color, roughness):
+        shader = painted(tree, color, roughness)
+        multiply = tree.nodes.new("ShaderNodeVectorMath")
+        multiply.operation = "MULTIPLY"
+        tree.links.new(tree.nodes.new("ShaderNodeTexCoord").outputs["Object"], multiply.inputs[0])
+        tree.links.new(color, multiply.inputs[1])
+        tree.links.new(multiply.outputs[0], shader.inputs["Base Color"])
+        return shader
+
+    group = made.group(fill)
+    shader = made.mix("ShaderNodeMixShader", group, made.add("ShaderNodeBsdfDiffuse", Color=BLUE), 0.5)
+    made.show(shader if is_mixed else group)
+    nodes, sockets = len(group.node_tree.nodes), len(group.node_tree.interface.items_tree)
+    (surfels,) = map(surfels_of, convert(resolution=16, bake_materials=True))
+    x = surfels.positions[:, 0] + bpy.context.object.location[0]
+    expected = 0.8 * x if not is_mixed else 0.4 * x + 0.05
+    assert np.abs(surfels.colors[:, 0] - expected).max() < 3e-3
+    assert [g.name for g in bpy.data.node_groups if g.name.startswith("paint")] == ["paint"]
+    assert (len(group.node_tree.nodes), len(group.node_tree.interface.items_tree)) == (nodes, sockets)
+
+
+def test_a_mix_of_plain_shaders_is_their_mean(made):
+    glossy = made.add("ShaderNodeBsdfGlossy", Color=RED, Roughness=0.2)
+    made.show(made.mix("ShaderNodeMixShader", made.add("ShaderNodeBsdfDiffuse", Color=BLUE), glossy, 0.25))
+    assert np.allclose(made.color, 0.75 * np.array(BLUE) + 0.25 * np.array(RED))
+    assert np.allclose((made.shaded.roughness, made.shaded.metallic), (0.8, 0.25))
+    assert made.said == ["The material 'made' mixes shaders, which this engine draws as one with their mean settings"]
+
+
+def test_an_added_lamp_only_adds_its_light(made):
+    paint = made.add("ShaderNodeBsdfPrincipled", Base_Color=RED, Roughness=0.2)
+    lamp = made.add("ShaderNodeEmission", Color=BLUE, Strength=3.0)
+    made.show(made.mix("ShaderNodeAddShader", paint, lamp))
+    assert np.allclose(made.color, RED)
+    assert np.allclose(made.shaded.emission, 3 * np.array(BLUE[:3])) and np.isclose(made.shaded.roughness, 0.2)
+
+
+def test_a_mix_by_a_texture_shows_its_shaders_and_not_grey(made):
+    mix = made.mix(
+        "ShaderNodeMixShader", *(made.add("ShaderNodeBsdfDiffuse", Color=color) for color in (RED, BLUE)), 0.5
+    )
+    made.tree.links.new(made.tree.nodes.new("ShaderNodeTexNoise").outputs[0], mix.inputs[0])
+    made.show(mix)
+    surface, unread = made.surface
+    assert np.allclose(surface.color.value, (np.array(RED) + BLUE) / 2)
+    assert {str(what) for what in unread} == {"base colour comes from a Mix Shader node"}
+
+
+def test_a_ring_of_shaders_ends(made):
+    first, second = made.add("ShaderNodeAddShader"), made.add("ShaderNodeAddShader")
+    made.tree.links.new(first.outputs[0], second.inputs[0])
+    made.tree.links.new(second.outputs[0], first.inputs[0])
+    made.tree.links.new(made.add("ShaderNodeBsdfDiffuse", Color=RED).outputs[0], first.inputs[1])
+    made.show(second)
+    assert np.allclose(made.color, RED)
+
+
+UNSEEN = {
+    "a volume": ("has no surface but a volume, which is not drawn", "ShaderNodeVolumeScatter", "Volume"),
+    "a hole": (None, "ShaderNodeBsdfTransparent", "Surface"),
+    "a holdout": ("is a Holdout, through which this engine shows what lies behind", "ShaderNodeHoldout", "Surface"),
+}
+
+
+@pytest.mark.parametrize("what", UNSEEN)
+def test_what_covers_nothing_becomes_no_surfels_and_is_named(what, made, convert, capfd):
+    why, kind, output = UNSEEN[what]
+    made.show(made.add(kind), output)
+    assert made.said == ([f"The material 'made' {why}"] if why else [])
+    with pytest.raises(
+        RuntimeError, match=r"None of its faces is seen .*'made'.*; give them a material with a surface"
+    ):
+        convert(resolution=4)
+
+
+def test_faces_that_are_seen_are_converted_without_the_others(made, add_mesh, convert, surfels_of, capfd):
+    pair = add_mesh("pair", [(x, y, 0) for y in (0, 1) for x in (0, 1, 2)], [(0, 1, 4, 3), (1, 2, 5, 4)])
+    made.show(made.add("ShaderNodeVolumeScatter"), "Volume")
+    pair.data.materials.append(bpy.data.materials.new("plain"))
+    pair.data.materials.append(made.material)
+    pair.data.polygons[1].material_index = 1
+    (surfels,) = map(surfels_of, convert(resolution=8))
+    assert (surfels.positions[:, 0] + bpy.context.object.location[0]).max() < 1
+    assert "The material 'made' has no surface but a volume, which is not drawn; its faces are left out" in (
+        capfd.readouterr().out
+    )
