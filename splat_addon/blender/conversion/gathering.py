@@ -60,7 +60,7 @@ def gather(
         raise ValueError(_why_nothing(sources, shown))
     meshes, materials = _with_shared_slots([piece for piece in pieces if len(piece.content.triangles)])
     notes = [note for each in shown for note in each.notes()]
-    notes += [f"T{sentence[1:]}; its faces are left out" for piece in pieces for sentence in piece.content.unseen]
+    notes += [f"Some faces are left out: {sentence}" for piece in pieces for sentence in piece.content.unseen]
     unread = tuple(dict.fromkeys(each for piece in pieces for each in piece.content.unread))
     if len(sources) > 1:
         notes += [
