@@ -10,11 +10,12 @@ from functools import cached_property
 
 import numpy as np
 
+from ..large_surfels import SAMPLE_SIZE
 from ..surfels import Surfels, concatenate, empty_surfels
 from .blocks import Blocks, Level, depth_first, make_blocks
 from .clusters import clustered
 from .families import families
-from .merging import OVERLAP, as_surfels, merged
+from .merging import as_surfels, merged
 from .nodes import PORTION, Leaves, Table
 from .runs import Runs
 from .surroundings import as_drawn
@@ -162,7 +163,7 @@ def _cells(surfels: Surfels) -> Iterator[float]:
         return
     low, high = surfels.local_bounds
     shorter = np.minimum(*surfels.scales.T)
-    cell = FIRST_CELL * float(np.median(shorter)) / OVERLAP
+    cell = FIRST_CELL * float(np.median(shorter)) / SAMPLE_SIZE
     for _ in range(_MOST_LEVELS):
         yield cell
         if cell > 2 * float((high - low).max()):

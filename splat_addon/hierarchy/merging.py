@@ -2,10 +2,10 @@
 """Merges several surfels into one: position, ellipse and attributes.
 
 The position is the centroid by area, the normal the mean, and the ellipse has the second moments of its children's.
-They overlap like samples of a grid, by a factor of `OVERLAP`, and so does the merged one. Colours are means in linear
-light, weighted by opacity, so transmitted light is averaged too. If surfels have their own roughness, the length lost
-by the mean shading normal is added to it (Toksvig, "Mipmapping Normal Maps", 2005); otherwise a pixel with many surfels
-also shows the mean of their normals, and needs no correction.
+They overlap like samples of a grid, by a factor of `SAMPLE_SIZE`, and so does the merged one. Colours are means in
+linear light, weighted by opacity, so transmitted light is averaged too. If surfels have their own roughness, the
+length lost by the mean shading normal is added to it (Toksvig, "Mipmapping Normal Maps", 2005); otherwise a pixel with
+many surfels also shows the mean of their normals, and needs no correction.
 """
 
 from __future__ import annotations
@@ -20,8 +20,6 @@ from .merged_lines import clip_fields, merged_lines
 from .nodes import MEANS, MERGED_OVERLAP, Nodes, Table, cut_off
 from .texture_places import along_axes, merged_places
 
-#: Half-axis of the splat of a square cell, relative to its edge, as conversion makes it.
-OVERLAP = 1.25
 #: Squared half-axis per variance of position: the variance of a cell is 1 / 12 of its squared edge.
 _PER_VARIANCE = np.float32(12 * MERGED_OVERLAP**2)
 #: The ellipse around a child's own cell, relative to its half-axes; the parent must cover it.

@@ -13,7 +13,7 @@ from weakref import WeakKeyDictionary, WeakSet
 import numpy as np
 
 from ..hierarchy import Hierarchy, Sight, Split, Told, build_hierarchy, refit_hierarchy
-from ..hierarchy.merging import OVERLAP
+from ..large_surfels import SAMPLE_SIZE
 from ..surfels import Surfels
 from .scene import Instance, Scene
 from .scene.camera import Camera
@@ -149,7 +149,7 @@ def _work(surfels: Surfels) -> float:
 def _spared(instance: Instance, camera: Camera, tolerance: float) -> float:
     """The share of an instance's surfels that a cut spares, from the spacing of some of them in the picture."""
     matrix, step = instance.model_view(camera), max(len(instance.surfels) // _SOME, 1)
-    spacing = instance.surfels.scales[::step].min(axis=1) / OVERLAP
+    spacing = instance.surfels.scales[::step].min(axis=1) / SAMPLE_SIZE
     depth = -(instance.surfels.positions[::step] @ matrix[2, :3] + matrix[2, 3])
     pixels = spacing * camera.pixels_per_unit() * float(np.linalg.norm(matrix[:3, :3], 2))
     if not camera.is_orthographic:

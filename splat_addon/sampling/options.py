@@ -6,12 +6,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from ..large_surfels import SAMPLE_SIZE
 from .ldc.reductions import DEFAULT_GRAZING_ANGLE, check_grazing_angle, find_reduction
 from .refine.adaptive import Tolerance
 
-#: Half-axis of a splat in H. At 1, seams between the regions of two axes leave 0.025 % of the armadillo uncovered at
-#: resolution 256, visible as single dark specks; at 1.25 none of 200,000 points on it was uncovered.
-DEFAULT_SPLAT_SIZE = 1.25
+#: Half-axis of a splat in H.
+DEFAULT_SPLAT_SIZE = SAMPLE_SIZE
 
 
 def check_crease_angle(angle: float | None) -> None:
