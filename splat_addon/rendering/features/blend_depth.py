@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from ...large_surfels import LARGE_WEIGHT, STEPS_OF_SAMPLES
 from ..plan.graph import Part
+from ..plan.planning import counted
 from .drawing import SPLAT_HOSTS
 
 _HOSTS = (*SPLAT_HOSTS, "visibility.frag")
@@ -17,15 +18,13 @@ def _count(planning) -> int:
     return sum(instance.surfels.blend_depth is not None for instance in planning.scene.surfels)
 
 
-def passes(planning):
-    """No passes; records whether there are such splats."""
-    why = "splats of {count} instances blend as deep as their surface asks for"
-    count = planning.find(_count)
-    return planning.counts("BLEND_DEPTH", count, why, "blend depths", "all splats blend as deep as epsilon says")
-
-
-def is_present(planning) -> bool:
-    return bool(planning.find(_count))
+passes, is_present = counted(
+    "BLEND_DEPTH",
+    _count,
+    "splats of {count} instances blend as deep as their surface asks for",
+    "blend depths",
+    "all splats blend as deep as epsilon says",
+)
 
 
 def parts(planning, p):

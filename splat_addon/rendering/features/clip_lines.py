@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from ...large_surfels import SAMPLE_SIZE
 from ..plan.graph import Part
+from ..plan.planning import counted
 from .drawing import SPLAT_HOSTS
 
 CONSTANTS = {"SAMPLE_SIZE": SAMPLE_SIZE}
@@ -33,14 +34,13 @@ def _count(planning) -> int:
     return sum(instance.surfels.clipped_count > 0 for instance in planning.scene.surfels)
 
 
-def passes(planning):
-    """No passes; records whether there are such splats."""
-    why = "splats of {count} instances end at creases and borders, drawn by themselves"
-    return planning.counts("CLIP_LINES", planning.find(_count), why, "clip lines", "all splats are whole")
-
-
-def is_present(planning) -> bool:
-    return bool(planning.find(_count))
+passes, is_present = counted(
+    "CLIP_LINES",
+    _count,
+    "splats of {count} instances end at creases and borders, drawn by themselves",
+    "clip lines",
+    "all splats are whole",
+)
 
 
 def parts(planning, p):

@@ -8,6 +8,7 @@ layers.
 from __future__ import annotations
 
 from ..plan.graph import Part
+from ..plan.planning import counted
 from . import silhouettes
 from .textures import ATLAS, OF_TRIANGLES
 
@@ -18,14 +19,13 @@ def _count(planning) -> int:
     return sum(instance.is_cut_out for instance in planning.scene.polygons)
 
 
-def passes(planning):
-    """No passes; records whether any polygons have holes."""
-    why = "textures cut holes into {count} instances of polygons"
-    return planning.counts("CUT_OUTS", planning.find(_count), why, "cut-outs", "no texture cuts holes into polygons")
-
-
-def is_present(planning) -> bool:
-    return bool(planning.find(_count))
+passes, is_present = counted(
+    "CUT_OUTS",
+    _count,
+    "textures cut holes into {count} instances of polygons",
+    "cut-outs",
+    "no texture cuts holes into polygons",
+)
 
 
 def parts(planning, p):

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from ..plan.graph import Part
+from ..plan.planning import counted
 from .drawing import SPLAT_HOSTS
 
 
@@ -11,16 +12,9 @@ def _count(planning) -> int:
     return sum(i.surfels.hidden_back is not None and not i.is_transparent for i in planning.scene.surfels)
 
 
-def passes(planning):
-    """No passes; records whether there are such splats."""
-    count = planning.find(_count)
-    return planning.counts(
-        "HIDDEN_BACKS", count, "{count} instances have cards with two sides", "backs of cards", "none"
-    )
-
-
-def is_present(planning) -> bool:
-    return bool(planning.find(_count))
+passes, is_present = counted(
+    "HIDDEN_BACKS", _count, "{count} instances have cards with two sides", "backs of cards", "none"
+)
 
 
 def parts(planning, p):

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from ..plan.graph import Part
+from ..plan.planning import counted
 from .textures import ATLAS, PLANE, pixel_variance
 
 DRAWN = {"polygon_bumps": lambda tile, placed: tile.resources.polygon_bumps(placed.instance.polygons)}
@@ -23,14 +24,9 @@ def _count(planning) -> int:
     return sum(instance.is_bumped for instance in planning.scene.polygons)
 
 
-def passes(planning):
-    """No passes; it says whether any polygons have normal maps."""
-    why = "{count} instances of polygons have normal maps"
-    return planning.counts("NORMAL_MAPS", planning.find(_count), why, "normal maps", "no polygons have any")
-
-
-def is_present(planning) -> bool:
-    return bool(planning.find(_count))
+passes, is_present = counted(
+    "NORMAL_MAPS", _count, "{count} instances of polygons have normal maps", "normal maps", "no polygons have any"
+)
 
 
 def parts(planning, p):

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from ..plan.graph import Part
+from ..plan.planning import counted
 from .drawing import SPLAT_HOSTS
 
 
@@ -11,14 +12,13 @@ def _count(planning) -> int:
     return sum(placed.is_split for placed in planning.shown)
 
 
-def passes(planning):
-    """No passes; records whether there are any."""
-    why = "{count} instances are polygons near the camera, or surfels beyond that"
-    return planning.counts("SPLIT", planning.find(_count), why, "split objects", "all are drawn whole")
-
-
-def is_present(planning) -> bool:
-    return bool(planning.find(_count))
+passes, is_present = counted(
+    "SPLIT",
+    _count,
+    "{count} instances are polygons near the camera, or surfels beyond that",
+    "split objects",
+    "all are drawn whole",
+)
 
 
 def parts(planning, p):

@@ -9,12 +9,13 @@ need none, because they let light through only beside what they show.
 from __future__ import annotations
 
 from ..plan.graph import Part
+from ..plan.planning import counted
 from . import shadows, transparency
 from .drawing import LIGHTING_HOSTS
 
 
 def _casting(planning) -> int:
-    if not planning.find(shadows.maps) or not planning.find(transparency.layers):
+    if not planning.shown or not planning.find(shadows.maps) or not planning.find(transparency.layers):
         return 0
     return sum(i.is_transparent and i.casts_shadow for i in planning.scene.surfels)
 
@@ -25,15 +26,13 @@ def _averaged(planning) -> bool:
     return any(not instance.surfels.is_cut_out for instance in casting)
 
 
-def passes(planning):
-    """No passes; records whether any transparent object casts shadows."""
-    why = "shadows of {count} instances are as transparent as those"
-    casting = planning.find(_casting) if planning.shown else 0
-    return planning.counts("SCREEN_DOOR", casting, why, "transparent shadows", "nothing transparent casts any")
-
-
-def is_present(planning) -> bool:
-    return bool(planning.shown and planning.find(_casting))
+passes, is_present = counted(
+    "SCREEN_DOOR",
+    _casting,
+    "shadows of {count} instances are as transparent as those",
+    "transparent shadows",
+    "nothing transparent casts any",
+)
 
 
 def parts(planning, p):

@@ -54,16 +54,29 @@ class Planning:
         """Record that a feature is present, and why."""
         self.features.append((feature, why))
 
-    def counts(self, feature: str, count: int, why: str, *otherwise: str) -> tuple:
-        """Record a feature without passes of its own as present, or for a count of 0 as not needed, and why.
-        why: contains {count}.
-        """
-        if self.shown and count:
-            self.has(feature, why.format(count=count))
-        elif self.shown:
-            self.skip(*otherwise)
-        return ()
-
     def skip(self, what: str, why: str) -> None:
         """Record what is not needed, and why."""
         self.skipped.append((what, why))
+
+
+def counted(
+    feature: str, count: Callable[[Planning], int], why: str, *otherwise: str
+) -> tuple[Callable[[Planning], tuple], Callable[[Planning], bool]]:
+    """The functions `passes` and `is_present` of a feature that has no passes of its own and is present unless
+    something is counted as 0.
+
+    why: says why it is present, with {count}. otherwise: what is not needed if it is absent, and why.
+    """
+
+    def passes(planning: Planning) -> tuple:
+        if planning.shown:
+            if found := planning.find(count):
+                planning.has(feature, why.format(count=found))
+            else:
+                planning.skip(*otherwise)
+        return ()
+
+    def is_present(planning: Planning) -> bool:
+        return bool(planning.find(count))
+
+    return passes, is_present
