@@ -5,11 +5,13 @@ import bpy
 import numpy as np
 import pytest
 
-from splat_addon.blender.geometry.mesh_extraction import evaluated_mesh, read_mesh, read_without_pixels
+from splat_addon.blender.geometry.mesh_extraction import read_mesh, read_without_pixels
+from splat_addon.blender.geometry.reading import readable_mesh
 
 
 def extract(source, read=read_mesh):
-    with evaluated_mesh(source, bpy.context.evaluated_depsgraph_get()) as (evaluated, mesh):
+    evaluated = source.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    with readable_mesh(evaluated) as mesh:
         return read(evaluated, mesh)
 
 

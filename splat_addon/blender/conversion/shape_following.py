@@ -16,6 +16,7 @@ from mathutils.bvhtree import BVHTree
 from ...surfels import Surfels
 from ..geometry.node_groups import known_group, new_modifier_group, uses_group
 from ..geometry.node_maths import Maths, enabled
+from ..geometry.reading import read_values
 from ..ids import POINT_ATTRIBUTES, REST, SHAPE_GROUP
 from .changing_shape import is_deformed, rebuilt_by
 from .following import follows
@@ -136,8 +137,7 @@ def _is_own_mesh(source: bpy.types.Object, mesh, depsgraph: bpy.types.Depsgraph)
     vertices = source.evaluated_get(depsgraph).data.attributes.get("position")
     if vertices is None or len(vertices.data) != len(mesh.positions):
         return False
-    positions = np.empty((len(mesh.positions), 3), np.float32)
-    vertices.data.foreach_get("vector", positions.ravel())
+    positions = read_values(vertices.data, "vector", 3, len(mesh.positions))
     return np.allclose(positions, mesh.positions, rtol=0, atol=_ROUNDING * float(np.ptp(positions, axis=0).max()))
 
 

@@ -40,7 +40,8 @@ from ..conversion.camera_density import without_camera
 from ..conversion.mesh_conversion import MAX_SURFELS
 from ..geometry.mesh_extraction import ExtractedMesh, Topology, read_mesh, read_topology, slot_materials
 from ..geometry.mesh_polygons import is_transparent, left_out_of_polygons, mesh_polygons
-from ..geometry.sources import mesh_key, readable_mesh
+from ..geometry.reading import readable_mesh
+from ..geometry.sources import mesh_key
 from ..geometry.split_meshes import MeshParts, parts_by_group
 from ..materials.surface_textures import kept_normal_maps, kept_textures
 from ..mesh_sampling_settings import Form

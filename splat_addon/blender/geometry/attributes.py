@@ -20,6 +20,7 @@ from ...interchange import followed
 from ...surfels import LAYOUT, OPTIONAL_LAYOUT, Surfels, valid_surfels
 from ..ids import POINT_ATTRIBUTES, REST, SOLID, PointAttribute
 from .gaussian_clouds import is_gaussian_cloud
+from .reading import read_values
 
 #: Data-blocks whose points can be surfels.
 Points = bpy.types.Mesh | bpy.types.PointCloud
@@ -202,9 +203,7 @@ def _loose_points(mesh: Points) -> np.ndarray | None:
     if has_loose_points_only(mesh):
         return None
     is_loose = np.ones(len(mesh.vertices), bool)
-    corners = np.empty(len(mesh.loops), np.int32)
-    mesh.attributes[".corner_vert"].data.foreach_get("value", corners)
-    is_loose[corners] = False
+    is_loose[read_values(mesh.attributes[".corner_vert"].data, "value", 1, len(mesh.loops), np.int32)] = False
     return np.flatnonzero(is_loose)
 
 

@@ -17,6 +17,7 @@ import bpy
 import numpy as np
 
 from ...interchange import Gaussians, flat_gaussians
+from .reading import read_values
 
 _RADIANCE = "radiance:base"
 _HARMONICS = "radiance:sh_"
@@ -59,6 +60,4 @@ def _values(cloud: bpy.types.PointCloud, name: str) -> np.ndarray:
     if attribute is None or attribute.data_type != kind or attribute.domain != "POINT":
         found = "is missing" if attribute is None else f"is {attribute.data_type} on {attribute.domain}"
         raise ValueError(f"Its Gaussian splats need the attribute {name!r} as {kind} on POINT, which {found}.")
-    values = np.empty((len(cloud.points), width), np.float32)
-    attribute.data.foreach_get(key, values.ravel())
-    return values
+    return read_values(attribute.data, key, width, len(cloud.points))

@@ -8,8 +8,7 @@ with `take`, which takes a quarter of the time of indexing.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import bpy
@@ -18,6 +17,7 @@ import numpy as np
 from ...sampling import Image, Surface, TriangleMesh
 from ..materials.material_surfaces import ATTRIBUTE_TYPES, MeshLayers, Unread, material_surface
 from ..materials.surface_shaders import why_unseen
+from .reading import read_values
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,35 +138,19 @@ def read_without_pixels(evaluated: bpy.types.Object, mesh: bpy.types.Mesh) -> Ex
     return read_mesh(evaluated, mesh, images=_NoPixels())
 
 
-@contextmanager
-def evaluated_mesh(
-    source: bpy.types.Object, depsgraph: bpy.types.Depsgraph
-) -> Iterator[tuple[bpy.types.Object, bpy.types.Mesh]]:
-    """The evaluated object and its mesh, which is freed when the context ends."""
-    evaluated = source.evaluated_get(depsgraph)
-    try:
-        yield evaluated, evaluated.to_mesh()
-    finally:
-        evaluated.to_mesh_clear()
-
-
-def _read(collection, key: str, width: int, count: int, dtype=np.float32) -> np.ndarray:
-    """(count, width), or (count,) for width 1, from one `foreach_get`."""
-    values = np.empty(count * width, dtype)
-    if count:
-        collection.foreach_get(key, values)
-    return values.reshape(count, width) if width > 1 else values
-
-
 def _positions(mesh: bpy.types.Mesh) -> np.ndarray:
     count = len(mesh.vertices)
-    return _read(mesh.attributes["position"].data, "vector", 3, count) if count else np.empty((0, 3), np.float32)
+    return read_values(mesh.attributes["position"].data, "vector", 3, count) if count else np.empty((0, 3), np.float32)
 
 
 def _corner_vertices(mesh: bpy.types.Mesh) -> np.ndarray:
     """(C,) int32 vertex of each face corner."""
     count = len(mesh.loops)
-    return _read(mesh.attributes[".corner_vert"].data, "value", 1, count, np.int32) if count else np.empty(0, np.int32)
+    return (
+        read_values(mesh.attributes[".corner_vert"].data, "value", 1, count, np.int32)
+        if count
+        else np.empty(0, np.int32)
+    )
 
 
 def _triangle_corners(mesh: bpy.types.Mesh) -> tuple[np.ndarray | None, np.ndarray | None]:
@@ -175,15 +159,15 @@ def _triangle_corners(mesh: bpy.types.Mesh) -> tuple[np.ndarray | None, np.ndarr
         return None, None
     mesh.calc_loop_triangles()
     count = len(mesh.loop_triangles)
-    corners = _read(mesh.loop_triangles, "loops", 3, count, np.int32)
-    return corners, _read(mesh.loop_triangle_polygons, "value", 1, count, np.int32)
+    corners = read_values(mesh.loop_triangles, "loops", 3, count, np.int32)
+    return corners, read_values(mesh.loop_triangle_polygons, "value", 1, count, np.int32)
 
 
 def _corner_normals(mesh: bpy.types.Mesh, topology: Topology) -> np.ndarray | None:
     """(T, 3, 3) shading normals; None if every triangle is flat and has its own normal."""
     if not len(topology) or (mesh.normals_domain == "FACE" and len(topology) == len(mesh.polygons)):
         return None
-    return topology.at_corners(_read(mesh.corner_normals, "vector", 3, len(mesh.loops)))
+    return topology.at_corners(read_values(mesh.corner_normals, "vector", 3, len(mesh.loops)))
 
 
 def _material_indices(mesh: bpy.types.Mesh, topology: Topology, slots: int) -> np.ndarray | None:
@@ -191,7 +175,7 @@ def _material_indices(mesh: bpy.types.Mesh, topology: Topology, slots: int) -> n
     attribute = mesh.attributes.get("material_index")
     if attribute is None:
         return None
-    indices = _read(attribute.data, "value", 1, len(mesh.polygons), np.int32)
+    indices = read_values(attribute.data, "value", 1, len(mesh.polygons), np.int32)
     return topology.on_faces(np.clip(indices, 0, slots - 1))
 
 
@@ -230,7 +214,7 @@ def _color_reader(mesh: bpy.types.Mesh, topology: Topology):
     def read(name: str) -> np.ndarray:
         attribute = mesh.attributes[name]
         key, width = ATTRIBUTE_TYPES[attribute.data_type]
-        values = _read(attribute.data, key, width, len(attribute.data)).reshape(-1, width)
+        values = read_values(attribute.data, key, width, len(attribute.data)).reshape(-1, width)
         if width < 4:
             rgba = np.zeros((len(values), 4), np.float32)
             rgba[:, : 3 if width == 1 else width] = values
@@ -246,4 +230,4 @@ def _color_reader(mesh: bpy.types.Mesh, topology: Topology):
 
 
 def _uv_reader(mesh: bpy.types.Mesh, topology: Topology):
-    return lambda name: topology.at_corners(_read(mesh.uv_layers[name].uv, "vector", 2, len(mesh.loops)))
+    return lambda name: topology.at_corners(read_values(mesh.uv_layers[name].uv, "vector", 2, len(mesh.loops)))

@@ -12,7 +12,7 @@ import bpy
 import numpy as np
 
 from .attributes import has_surfels
-from .mesh_extraction import evaluated_mesh
+from .reading import read_values, readable_mesh
 
 #: Blender's attribute type -> what `foreach_get` takes, and values per point. "color" is scene-linear for both.
 _READS = {
@@ -53,10 +53,10 @@ def extract_points(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> 
     cloud = evaluated.data if evaluated.type == "POINTCLOUD" else geometry and geometry.pointcloud
     if cloud is not None:
         return _read_points(cloud.attributes, len(cloud.points), materials)
-    with evaluated_mesh(source, depsgraph) as (_, mesh):
+    with readable_mesh(evaluated) as mesh:
         points = _read_points(mesh.attributes, len(mesh.vertices), materials)
         if points.normals is None and mesh.polygons:
-            points = replace(points, normals=_values(mesh.vertex_normals, "vector", 3, len(mesh.vertices)))
+            points = replace(points, normals=read_values(mesh.vertex_normals, "vector", 3, len(mesh.vertices)))
     return points
 
 
@@ -87,7 +87,7 @@ def _read_points(attributes, count: int, materials) -> ExtractedPoints:
         attribute = attributes.get(name)
         if attribute is None or attribute.domain != "POINT" or attribute.data_type not in types:
             return None
-        return _values(attribute.data, *_READS[attribute.data_type], count)
+        return read_values(attribute.data, *_READS[attribute.data_type], count)
 
     positions = read("position", "FLOAT_VECTOR")
     colors = (read(name, *_COLOR_TYPES) for name in (*_COLOR_NAMES, *(a.name for a in attributes)))
@@ -98,11 +98,3 @@ def _read_points(attributes, count: int, materials) -> ExtractedPoints:
         colors=next((values for values in colors if values is not None), None),
         materials=materials,
     )
-
-
-def _values(collection, key: str, width: int, count: int) -> np.ndarray:
-    """(count, width) or (count,) float32 from one `foreach_get`."""
-    values = np.empty((count, width) if width > 1 else count, np.float32)
-    if count:
-        collection.foreach_get(key, values.ravel())
-    return values

@@ -16,6 +16,7 @@ import bpy
 from ..ids import POINT_ATTRIBUTES, POINTS_GROUP, POINTS_MATERIAL, SOLID
 from .node_groups import known_group, new_modifier_group, uses_group
 from .node_maths import enabled
+from .reading import readable_mesh
 
 #: Custom property of the node group, which distinguishes our groups from others of the same name.
 _MAKE, _VERSION = "surfels_points", 1
@@ -43,12 +44,8 @@ def points_of(evaluated: bpy.types.Object) -> Iterator[list[bpy.types.Mesh | bpy
     if evaluated.type == "POINTCLOUD":
         yield [evaluated.data]
     elif evaluated.type == "MESH":
-        with shown_points(evaluated) as cloud:
-            try:
-                mesh = evaluated.to_mesh()
-                yield [mesh] if cloud is None else [mesh, cloud]
-            finally:
-                evaluated.to_mesh_clear()
+        with shown_points(evaluated) as cloud, readable_mesh(evaluated) as mesh:
+            yield [mesh] if cloud is None else [mesh, cloud]
     else:
         yield []
 

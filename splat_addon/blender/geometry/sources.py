@@ -8,8 +8,7 @@ collections.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -18,6 +17,7 @@ import numpy as np
 
 from .attributes import has_surfels
 from .points_proxy import is_points_modifier, shows_as_points
+from .reading import readable_mesh
 
 #: Types whose evaluated geometry is, or may be, a mesh; the latter only with modifiers that could make one.
 _SURFACES = frozenset({"MESH", "CURVE", "SURFACE", "FONT", "META"})
@@ -138,15 +138,6 @@ def mesh_key(evaluated: bpy.types.Object) -> tuple:
     """A key that is equal for entries with the same evaluated mesh and materials, within one evaluation."""
     slots = (slot.material.session_uid if slot.material else 0 for slot in evaluated.material_slots)
     return evaluated.data.session_uid, *slots
-
-
-@contextmanager
-def readable_mesh(evaluated: bpy.types.Object) -> Iterator[bpy.types.Mesh]:
-    """The mesh of an evaluated mesh object or instance, whether or not it is subdivided on the graphics card."""
-    try:
-        yield evaluated.to_mesh()
-    finally:
-        evaluated.to_mesh_clear()
 
 
 def metaball_family(source: bpy.types.Object) -> list[bpy.types.Object]:
