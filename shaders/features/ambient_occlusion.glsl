@@ -20,15 +20,12 @@ void ambient_occlusion_reflected(inout vec3 light, float roughness) {
 }
 
 #part shaded_sample
+#include "lib/to_viewer.glsl"
+
 const int OCCLUSION_SLICES = 4;
 // Minimum cosine to the viewer: a mean normal may face away although the surface is visible.
 const float LEAST_OCCLUSION_FACING = 0.2;
 const int OCCLUSION_STEPS = 8;
-
-vec3 sample_place(ivec2 texel, float depth) {
-  vec2 place = view.window.xy + (vec2(texel) + 0.5) * view.window.zw;
-  return vec3(view.is_parallel > 0.5 ? place : place * depth, -depth);
-}
 
 // Cosine between the direction to the viewer and the highest horizon along a direction, at least `lowest`. phase: of
 // the steps, which grow with the distance. Occluders beyond half the distance fade out.
@@ -44,7 +41,7 @@ float horizon_cosine(ivec2 texel, vec3 position, vec3 to_eye, ivec2 along, float
     if (any(greaterThanEqual(uvec2(at), size))) break;  // a negative value is a large unsigned one
     float depth = texelFetch(occluders, at, 0).r;
     if (!(depth > 0.0)) continue;
-    vec3 toward = sample_place(at, depth) - position;
+    vec3 toward = eye_position(at, depth) - position;
     float square = max(dot(toward, toward), 1e-30), per_length = inversesqrt(square);
     float weight = clamp(2.0 - square * per_length * per_distance, 0.0, 1.0);
     highest = max(highest, mix(lowest, dot(toward, to_eye) * per_length, weight));
@@ -82,8 +79,8 @@ float open_share_at(ivec2 texel, vec3 position, vec3 normal, vec3 to_eye) {
 }
 
 void ambient_occlusion_prepare(inout Shaded s) {
-  vec3 position = sample_place(s.texel, s.mean.depth);
-  vec3 to_eye = view.is_parallel > 0.5 ? vec3(0.0, 0.0, 1.0) : -normalize(position);
+  vec3 position = eye_position(s.texel, s.mean.depth);
+  vec3 to_eye = to_viewer(position);
   open_share = open_share_at(s.texel, position, s.normal, to_eye);
   open_cosine = clamp(dot(s.normal, to_eye), 0.0, 1.0);
   vec3 albedo = clamp(s.mean.color, 0.0, 1.0);

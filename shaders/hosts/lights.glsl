@@ -5,6 +5,8 @@
 //          `spread` makes the square of a light with a size, `reach` runs before shadows, `hide` computes shadows,
 //          `arrive` runs after them.
 
+const float PI = 3.14159265358979;
+
 struct Incident {
   vec3 to_light;    // unit
   vec3 irradiance;  // of a surface that faces the light

@@ -4,10 +4,6 @@
 
 const float MIN_ROUGHNESS = 0.03;
 
-vec3 to_viewer(vec3 position) {
-  return view.is_parallel > 0.5 ? vec3(0.0, 0.0, 1.0) : -normalize(position);
-}
-
 float blinn_exponent(float roughness) {
   float width = clamp(roughness, MIN_ROUGHNESS, 1.0);
   width *= width;

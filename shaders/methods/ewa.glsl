@@ -3,7 +3,7 @@
 // Summary: the classic reference method: the splat's projection is approximated as affine at its centre and combined
 //          with the pixel's Gaussian in the picture. The twin of reference/methods/ewa.py.
 
-const float KERNEL_VARIANCE = 0.25;
+#include "lib/kernel_variance.glsl"
 
 const float FOOTPRINT_END = 1.0;
 

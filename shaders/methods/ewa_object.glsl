@@ -7,11 +7,11 @@
 #include "lib/surfel_quad.glsl"
 
 #part vertex
+#include "lib/kernel_variance.glsl"
 #include "lib/plane.glsl"
 #include "lib/principal_places.glsl"
 #include "lib/reaches_near.glsl"
 
-const float KERNEL_VARIANCE = 0.25;
 const float LEAST_FLATNESS2 = 0.004;  // flatter than 1 : 16, splats are not widened further, or quads would have no end
 const float ANY = 3e38;
 const float LEAST_DEPTH = 1e-3;       // relative to the splat's: quads are not drawn nearer to the eye's plane

@@ -4,7 +4,8 @@
 //          its integral: neither tiny nor stretched splats lose or gain weight. The kernel's rim is blurred by the
 //          pixel's Gaussian; splats larger than pixels are blurred nowhere else. The twin of reference/methods/mip.py.
 
-const float KERNEL_VARIANCE = 0.25;
+#include "lib/kernel_variance.glsl"
+
 const float RIM_END = 1.4;  // standard deviations beyond the rim at which the weight becomes 0
 
 // The triangle around the footprint is drawn in any case; pixels within this multiple of the ellipse count, and its

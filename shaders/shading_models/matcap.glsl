@@ -2,6 +2,8 @@
 //             basis around the view ray, and the scale that keeps within the ball's rim).
 // Summary: the colour of a ball in an image at the same normal, times the surface's own colour.
 
+#include "lib/to_viewer.glsl"
+
 vec3 matcap_at(vec2 place) {
   ivec2 size = textureSize(matcap, 0);
   vec2 at = clamp(place * vec2(size) - 0.5, vec2(0.0), vec2(size - 1));
@@ -13,7 +15,7 @@ vec3 matcap_at(vec2 place) {
 }
 
 vec3 shade(vec3 position, vec3 normal, vec3 base, vec3 material) {
-  vec3 to_eye = view.is_parallel > 0.5 ? vec3(0.0, 0.0, 1.0) : -normalize(position);
+  vec3 to_eye = to_viewer(position);
   float a = 1.0 / (1.0 + to_eye.z), b = -to_eye.x * to_eye.y * a;
   vec3 across = vec3(1.0 - to_eye.x * to_eye.x * a, b, -to_eye.x);
   vec3 up = vec3(b, 1.0 - to_eye.y * to_eye.y * a, -to_eye.y);

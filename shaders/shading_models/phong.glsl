@@ -3,9 +3,8 @@
 // Summary: Lambert's diffuse light and Blinn's highlight, in the metal's colour or the reflectance; a uniform world.
 
 #include "lib/half_vector.glsl"
+#include "lib/to_viewer.glsl"
 #include "hosts/world_light.glsl"
-
-const float PI = 3.14159265358979;
 
 #parts
 vec3 shade(vec3 position, vec3 normal, vec3 base, vec3 material) {

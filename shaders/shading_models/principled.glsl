@@ -8,9 +8,9 @@
 
 #include "lib/brdf.glsl"
 #include "lib/tangent_frame.glsl"
+#include "lib/to_viewer.glsl"
 #include "hosts/world_light.glsl"
 
-const float PI = 3.14159265358979;
 const float LEAST_ROUGHNESS = 0.03;
 const float MIN_COSINE = 1e-4;
 // A dielectric with almost no reflectance at normal incidence is effectively absent, and does not reflect at grazing
@@ -35,7 +35,7 @@ struct Lobe {
 vec3 shade(vec3 position, vec3 normal, vec3 base, vec3 material) {
   Lobe lobe;
   lobe.normal = normal;
-  lobe.to_viewer = view.is_parallel > 0.5 ? vec3(0.0, 0.0, 1.0) : -normalize(position);
+  lobe.to_viewer = to_viewer(position);
   lobe.roughness = clamp(material.x, LEAST_ROUGHNESS, 1.0);
   lobe.nv = max(dot(normal, lobe.to_viewer), MIN_COSINE);
   float metallic = clamp(material.y, 0.0, 1.0);

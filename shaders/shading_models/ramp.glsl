@@ -5,7 +5,6 @@
 
 #include "hosts/world_light.glsl"
 
-const float PI = 3.14159265358979;
 const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722);  // ITU-R BT.709
 
 vec3 ramp_at(float luminance) {

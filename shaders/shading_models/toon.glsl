@@ -4,9 +4,8 @@
 //          rough materials. Number and softness of the steps are frame values.
 
 #include "lib/half_vector.glsl"
+#include "lib/to_viewer.glsl"
 #include "hosts/world_light.glsl"
-
-const float PI = 3.14159265358979;
 
 // 0 below 0 and 1 above 1; between them half way.
 float soft_step(float x, float softness) {
