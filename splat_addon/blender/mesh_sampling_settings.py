@@ -16,13 +16,12 @@ from .density_properties import (
     texture_mapped_property,
 )
 from .enum_values import check_choices
-from .geometry.sources import asked_of, has_surfaces
+from .geometry.sources import asked_of
 from .ids import OBJECT_SETTINGS, RENDER_SETTINGS
 from .registration import with_property
-from .ui.engine_panel import EnginePanel
 
 #: density -> the property of `MeshSamplingProperties` that holds its number, and the kind of density.
-_NUMBERED = {
+NUMBERED = {
     "AUTOMATIC": ("mesh_pixels", "automatic"),
     "RESOLUTION": ("mesh_resolution", "resolution"),
     "SPACING": ("mesh_spacing", "spacing"),
@@ -71,7 +70,7 @@ _MESH_ITEMS = (
 #: The numbers match earlier files, which had no automatic density.
 _NUMBERS = {"RESOLUTION": 0, "SPACING": 1, "CAMERA": 2, "AUTOMATIC": 3}
 
-_DENSITY_ITEMS = [(name, DENSITIES[name].label, DENSITIES[name].description, _NUMBERS[name]) for name in _NUMBERED]
+_DENSITY_ITEMS = [(name, DENSITIES[name].label, DENSITIES[name].description, _NUMBERS[name]) for name in NUMBERED]
 
 
 class MeshSamplingProperties:
@@ -107,7 +106,7 @@ def density_of_meshes(scene: bpy.types.Scene) -> dict[str, float]:
     """The density at which meshes are sampled: {"resolution" | "spacing" (world units) | "pixels" | "automatic":
     number}."""
     properties = getattr(scene, RENDER_SETTINGS)
-    name, kind = _NUMBERED[properties.mesh_density]
+    name, kind = NUMBERED[properties.mesh_density]
     return {kind: getattr(properties, name)}
 
 
@@ -183,7 +182,7 @@ class SurfelObjectSettings(bpy.types.PropertyGroup):
 
 
 #: kind of split -> the property, and field of `Form`, that it needs.
-_SPLIT_BY = {"DISTANCE": "split_distance", "SPACING": "split_pixels", "GROUP": "split_group"}
+SPLIT_BY = {"DISTANCE": "split_distance", "SPACING": "split_pixels", "GROUP": "split_group"}
 
 
 class Form(NamedTuple):
@@ -231,44 +230,8 @@ def form_of(entry: bpy.types.DepsgraphObjectInstance, scene: bpy.types.Scene) ->
     kind, settings = chosen[0].render_as, chosen[0]
     if kind == "GROUP" and not settings.split_group:
         raise ValueError("It is split by a vertex group, and none is chosen; choose one in its object properties.")
-    name = _SPLIT_BY.get(kind)
+    name = SPLIT_BY.get(kind)
     return Form(kind, **{name: getattr(settings, name)} if name else {})
 
 
-class RENDER_PT_surfel_meshes(EnginePanel, bpy.types.Panel):
-    bl_label = "Meshes"
-    bl_context = "render"
-    bl_order = 0
-
-    def draw(self, context):
-        properties = getattr(context.scene, RENDER_SETTINGS)
-        super().draw(context)
-        self.layout.prop(properties, "render_meshes")
-        # Also for objects that are surfels by their own choice, or because they are transparent.
-        self.layout.prop(properties, "mesh_density")
-        self.layout.prop(properties, _NUMBERED[properties.mesh_density][0])
-        self.layout.prop(properties, "mesh_textures")
-
-
-class OBJECT_PT_surfel_splatting(EnginePanel, bpy.types.Panel):
-    bl_label = "Surfel Splatting"
-    bl_context = "object"
-
-    @classmethod
-    def poll(cls, context):
-        return super().poll(context) and context.object is not None and has_surfaces(context.object)
-
-    def draw(self, context):
-        super().draw(context)
-        settings = getattr(context.object, OBJECT_SETTINGS)
-        self.layout.prop(settings, "render_as")
-        if settings.render_as == "GROUP":
-            self.layout.prop_search(settings, "split_group", context.object, "vertex_groups")
-        elif name := _SPLIT_BY.get(settings.render_as):
-            self.layout.prop(settings, name)
-        self.layout.prop(settings, "detail")
-
-
-register, unregister = with_property(
-    bpy.types.Object, OBJECT_SETTINGS, SurfelObjectSettings, RENDER_PT_surfel_meshes, OBJECT_PT_surfel_splatting
-)
+register, unregister = with_property(bpy.types.Object, OBJECT_SETTINGS, SurfelObjectSettings)

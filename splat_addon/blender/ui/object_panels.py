@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Panel for an object's ray visibility, which Blender's Visibility panel does not show for other engines."""
+"""Panels for how an object is drawn and for its ray visibility; for other engines Blender's Visibility panel does not
+show the latter."""
 
 from __future__ import annotations
 
 import bpy
 
 from ..geometry.sources import has_surfaces, is_surfel_object
+from ..ids import OBJECT_SETTINGS
+from ..mesh_sampling_settings import SPLIT_BY
 from .engine_panel import EnginePanel
 
 
@@ -26,4 +29,23 @@ class OBJECT_PT_surfel_visibility(EnginePanel, bpy.types.Panel):
         column.prop(context.object, "visible_shadow", text="Shadow")
 
 
-register, unregister = bpy.utils.register_classes_factory((OBJECT_PT_surfel_visibility,))
+class OBJECT_PT_surfel_splatting(EnginePanel, bpy.types.Panel):
+    bl_label = "Surfel Splatting"
+    bl_context = "object"
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and context.object is not None and has_surfaces(context.object)
+
+    def draw(self, context):
+        super().draw(context)
+        settings = getattr(context.object, OBJECT_SETTINGS)
+        self.layout.prop(settings, "render_as")
+        if settings.render_as == "GROUP":
+            self.layout.prop_search(settings, "split_group", context.object, "vertex_groups")
+        elif name := SPLIT_BY.get(settings.render_as):
+            self.layout.prop(settings, name)
+        self.layout.prop(settings, "detail")
+
+
+register, unregister = bpy.utils.register_classes_factory((OBJECT_PT_surfel_visibility, OBJECT_PT_surfel_splatting))

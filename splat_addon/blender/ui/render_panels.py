@@ -9,6 +9,7 @@ import bpy
 
 from ...rendering.methods import get_method
 from ..ids import ENGINE, RENDER_SETTINGS, TEXTS
+from ..mesh_sampling_settings import NUMBERED
 from ..operators.render_preset import draw_presets
 from ..properties import blurs, is_coarser_than_viewport
 from ..spoken import said
@@ -197,6 +198,19 @@ class RENDER_PT_surfel_performance(_RenderPanel, bpy.types.Panel):
         self.layout.prop(context.scene.render, "use_persistent_data", text="Persistent Data")
 
 
+class RENDER_PT_surfel_meshes(_RenderPanel, bpy.types.Panel):
+    bl_label = "Meshes"
+    bl_order = 0
+    # The density is also for objects that are surfels by their own choice, or because they are transparent.
+    properties = ("render_meshes", "mesh_density")
+
+    def draw(self, context):
+        super().draw(context)
+        properties = getattr(context.scene, RENDER_SETTINGS)
+        self.layout.prop(properties, NUMBERED[properties.mesh_density][0])
+        self.layout.prop(properties, "mesh_textures")
+
+
 #: Blender's panels whose settings this engine does not have, or replaces with its own; so are all of Freestyle's.
 _NOT_JOINED = frozenset(
     {
@@ -259,6 +273,7 @@ _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
         RENDER_PT_surfel_film,
         RENDER_PT_surfel_papers,
         RENDER_PT_surfel_performance,
+        RENDER_PT_surfel_meshes,
     )
 )
 
