@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 
 from splat_addon.clip_lines import are_reflex, kept, pack_lines, turned, unpack_lines
 from splat_addon.interchange import transformed
-from splat_addon.surfels import Surfels, axes_quaternions
+from splat_addon.quaternions import axes_quaternions
+from splat_addon.surfels import Surfels
 
 ANGLES = st.floats(-np.pi, np.pi)
 OFFSETS = st.floats(-0.95, 0.95)

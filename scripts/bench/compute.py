@@ -20,11 +20,11 @@ from measuring.models import in_view, load
 from measuring.timer_queries import has_timer_queries, timed_draws
 from measuring.timing import in_turn
 from splat_addon.hierarchy import cut_blocks, entries_of
+from splat_addon.quaternions import axes_columns
 from splat_addon.rendering import Renderer, Settings, open_device, plan
 from splat_addon.rendering.device import Device
 from splat_addon.rendering.levels import hierarchy_of, sight
 from splat_addon.sampling import sample_mesh
-from splat_addon.surfels import axes_columns
 
 DEVICES = ("standalone",)
 QUICK = {"size": 64, "resolution": 300, "model": "bunny.obj.gz"}

@@ -13,7 +13,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..large_surfels import BLEND_STEPS, STEPS_OF_SAMPLES
-from ..surfels import Surfels, axes_quaternions
+from ..quaternions import axes_quaternions
+from ..surfels import Surfels
 from .bounds import Frame, bounds
 from .families import for_children, largest, total
 from .merged_lines import clip_fields, merged_lines

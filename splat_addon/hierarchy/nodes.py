@@ -9,7 +9,8 @@ import numpy as np
 
 from ..clip_lines import CLIP_FIELDS, are_reflex, unpack_lines
 from ..large_surfels import LARGE_SIZE, LARGE_WEIGHT, are_large
-from ..surfels import Surfels, axes_columns
+from ..quaternions import axes_columns
+from ..surfels import Surfels
 from .families import Families
 from .texture_places import gradients
 

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..surfels import Surfels, quaternion_axes, valid_surfels
+from ..quaternions import quaternion_axes
+from ..surfels import Surfels, valid_surfels
 from .columns import srgb_to_linear
 
 #: The spherical harmonic of degree 0, 1 / (2 sqrt(pi)).

@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from ..clip_lines import CLIP_FIELDS, turned
-from ..surfels import Surfels, axes_quaternions, concatenate, empty_surfels
+from ..quaternions import axes_quaternions
+from ..surfels import Surfels, concatenate, empty_surfels
 
 
 def transformed(surfels: Surfels, matrix: np.ndarray) -> Surfels:

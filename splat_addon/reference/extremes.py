@@ -11,10 +11,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..quaternions import axes_quaternions
 from ..rendering.scene import Instance, Scene
 from ..rendering.scene.camera import Camera
 from ..rendering.scene.light import Light
-from ..surfels import Surfels, axes_quaternions
+from ..surfels import Surfels
 
 #: Radius of a sheet's disc in half-diagonals of its cell: neighbours overlap at the corners.
 SHEET_OVERLAP = 1.2

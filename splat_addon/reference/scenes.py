@@ -13,11 +13,12 @@ from dataclasses import replace
 import numpy as np
 
 from ..images import Image
+from ..quaternions import axes_quaternions
 from ..rendering.scene import Instance, Material, PolygonInstance, Scene, SurfaceTexture
 from ..rendering.scene.camera import Camera, look_at
 from ..rendering.scene.light import Light
 from ..rendering.scene.polygons import Polygons, make_polygons
-from ..surfels import Surfels, axes_quaternions
+from ..surfels import Surfels
 from .lettering import PLACE, page
 
 #: Half-axis of a splat in spacings sqrt(area / count): ellipses down to `LEAST_ASPECT` still overlap everywhere.

@@ -5,7 +5,8 @@ import numpy as np
 
 from splat_addon.clip_lines import are_reflex, pack_lines
 from splat_addon.hierarchy.building import build_levels
-from splat_addon.surfels import Surfels, axes_quaternions, quaternion_axes
+from splat_addon.quaternions import axes_quaternions, quaternion_axes
+from splat_addon.surfels import Surfels
 
 
 def make_surfels(positions, normals, half=0.05, **fields):

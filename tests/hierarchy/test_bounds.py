@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from splat_addon.clip_lines import kept
 from splat_addon.hierarchy import surroundings
-from splat_addon.surfels import quaternion_axes
+from splat_addon.quaternions import quaternion_axes
 
 from ..rendering.creased import clipped_iron
 from .conftest import ball, cut_sheet, leaves_of, make_surfels, sheet

@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 
 from splat_addon.hierarchy import build_hierarchy
-from splat_addon.surfels import empty_surfels, quaternion_axes
+from splat_addon.quaternions import quaternion_axes
+from splat_addon.surfels import empty_surfels
 
 from .conftest import ball, cut_sheet, leaves_of, make_surfels, sheet
 

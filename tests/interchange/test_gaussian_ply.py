@@ -6,7 +6,7 @@ import plyfile
 import pytest
 
 from splat_addon.interchange import Gaussians, read_contents, write_gaussian_ply
-from splat_addon.surfels import quaternion_axes
+from splat_addon.quaternions import quaternion_axes
 
 NAMES = ("x", "y", "z", "nx", "ny", "nz", "f_dc_0", "f_dc_1", "f_dc_2", "opacity", "scale_0", "scale_1", "scale_2",
          "rot_0", "rot_1", "rot_2", "rot_3")  # fmt: skip

@@ -6,8 +6,9 @@ import math
 import numpy as np
 import pytest
 
+from splat_addon.quaternions import axes_quaternions
 from splat_addon.rendering.scene.camera import Camera
-from splat_addon.surfels import Surfels, axes_quaternions
+from splat_addon.surfels import Surfels
 
 
 @pytest.fixture

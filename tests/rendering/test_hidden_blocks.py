@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from splat_addon.hierarchy.cuts import Boxes
+from splat_addon.quaternions import axes_quaternions
 from splat_addon.reference import scenes
 from splat_addon.rendering import (
     Camera,
@@ -28,7 +29,7 @@ from splat_addon.rendering.features import hidden_objects, visibility
 from splat_addon.rendering.hidden_blocks import BlocksFrontToBack
 from splat_addon.rendering.levels import hierarchy_of
 from splat_addon.rendering.methods import METHODS
-from splat_addon.surfels import Surfels, axes_quaternions, concatenate
+from splat_addon.surfels import Surfels, concatenate
 from tests.rendering.left_out import ALL, are_equal, pictures
 
 SIZE = (264, 176)

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from splat_addon.quaternions import axes_quaternions
 from splat_addon.reference.metrics import psnr
 from splat_addon.rendering import (
     EMPTY_DEPTH,
@@ -26,7 +27,7 @@ from splat_addon.rendering import (
 )
 from splat_addon.rendering.plan import executor
 from splat_addon.rendering.settings import OUTPUTS
-from splat_addon.surfels import Surfels, axes_quaternions
+from splat_addon.surfels import Surfels
 
 FLAT = Settings(method="quad", shading="flat", detail_tolerance=0)
 RADIUS = 5.0

@@ -8,13 +8,14 @@ from hypothesis import strategies as st
 
 from splat_addon.hierarchy import build_hierarchy
 from splat_addon.hierarchy.ordering import sorted_with_order, spatial_order
+from splat_addon.quaternions import quaternion_axes
 from splat_addon.reference import scenes
 from splat_addon.reference.metrics import psnr
 from splat_addon.rendering import Camera, Scene, Settings
 from splat_addon.rendering.upload.packing_16_bit import pack_16_bit
 from splat_addon.rendering.upload.storages import STORAGES
 from splat_addon.rendering.upload.stored_order import places_of, stored_order
-from splat_addon.surfels import LAYOUT, Surfels, concatenate, quaternion_axes
+from splat_addon.surfels import LAYOUT, Surfels, concatenate
 
 BLOCK = 512
 

@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 from splat_addon.hierarchy import build_hierarchy
+from splat_addon.quaternions import axes_quaternions
 from splat_addon.reference.metrics import psnr
 from splat_addon.rendering import Camera, Instance, Light, Scene, Settings, look_at
 from splat_addon.rendering.methods import METHODS
-from splat_addon.surfels import Surfels, axes_quaternions
+from splat_addon.surfels import Surfels
 
 PEELING = [name for name, method in METHODS.items() if method.rasterizer != "point_sprite"]
 WORLD = (0.2, 0.4, 0.8)

@@ -6,10 +6,10 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from splat_addon.quaternions import quaternion_axes
 from splat_addon.reference.bare import uncovered_points
 from splat_addon.sampling import grid_spacing, sample_mesh
 from splat_addon.sampling.attributes.ellipses import ellipse_rotations, ellipse_scales
-from splat_addon.surfels import quaternion_axes
 
 
 @settings(deadline=None)

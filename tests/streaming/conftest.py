@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 
 from splat_addon.hierarchy import Sight
+from splat_addon.quaternions import axes_quaternions
 from splat_addon.streaming import write_blocks
-from splat_addon.surfels import Surfels, axes_quaternions, portions
+from splat_addon.surfels import Surfels, portions
 
 
 def ball(count=30_000, **fields):

@@ -17,6 +17,7 @@ import numpy as np
 import trimesh
 
 from measuring.models import in_view, load
+from splat_addon.quaternions import axes_quaternions
 from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.extremes import sheet
 from splat_addon.reference.methods import TWINS
@@ -27,7 +28,6 @@ from splat_addon.rendering.device.standalone import _STORED
 from splat_addon.rendering.features import gbuffer
 from splat_addon.rendering.plan.frame_plan import FramePlan
 from splat_addon.sampling import TriangleMesh, joined_at_edges, sample_mesh
-from splat_addon.surfels import axes_quaternions
 
 FLAT = Settings(supersampling=1, shading="flat", outputs=("color",), detail_tolerance=0.0)
 LIT = replace(FLAT, shading="phong", shadow_resolution=0)

@@ -13,8 +13,9 @@ from typing import ClassVar
 
 import numpy as np
 
+from ...quaternions import quaternion_axes
 from ...streaming import Stream
-from ...surfels import Surfels, quaternion_axes
+from ...surfels import Surfels
 from .camera import Camera
 from .environment import Environment
 from .light import MAX_LIGHT_SETS, Light

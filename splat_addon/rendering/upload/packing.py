@@ -13,7 +13,8 @@ import numpy as np
 
 from ...clip_lines import CLIP_FIELDS, TURN
 from ...large_surfels import BLEND_STEPS, steps_of
-from ...surfels import HIDDEN, OPAQUE, Surfels, quaternion_axes
+from ...quaternions import quaternion_axes
+from ...surfels import HIDDEN, OPAQUE, Surfels
 from ..scene import Finish, Material, Placed
 from .stored_order import SPLATS_PER_ROW
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...surfels import quaternion_axes
+from ...quaternions import quaternion_axes
 from .material_sampler import Samples, placed
 from .surfaces import Surface
 

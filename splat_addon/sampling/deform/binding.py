@@ -10,7 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from ...clip_lines import CLIP_FIELDS, turned
-from ...surfels import Surfels, axes_quaternions
+from ...quaternions import axes_quaternions
+from ...surfels import Surfels
 from ..mesh.cleaning import usable_triangles
 from ..mesh.triangle_mesh import TriangleMesh, doubled_areas, gather_corners, triangle_chunks
 from ..sample import Sampling, sample_surface

@@ -12,7 +12,8 @@ from itertools import product
 
 import numpy as np
 
-from ...surfels import OPTIONAL_LAYOUT, Surfels, axes_quaternions, concatenate
+from ...quaternions import axes_quaternions
+from ...surfels import OPTIONAL_LAYOUT, Surfels, concatenate
 from ..attributes.material_sampler import MaterialSampler, Samples
 from ..mesh.triangle_mesh import TriangleMesh, doubled_areas, gather_corners
 

@@ -13,7 +13,7 @@ from functools import partial
 
 import numpy as np
 
-from ...surfels import axes_columns, quaternion_axes
+from ...quaternions import axes_columns, quaternion_axes
 from ..ldc.grid import Grid
 from .borders import Borders
 from .image_neighbours import image_neighbours

@@ -10,7 +10,8 @@ from dataclasses import replace
 import numpy as np
 
 from ...clip_lines import CLIP_FIELDS
-from ...surfels import Surfels, axes_quaternions, empty_surfels
+from ...quaternions import axes_quaternions
+from ...surfels import Surfels, empty_surfels
 from ..options import DEFAULT_SPLAT_SIZE, check_crease_angle
 from ..progress import Progress, stage
 from .cells import spatial_order

@@ -16,7 +16,8 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from ...clip_lines import CLIP_FIELDS
-from ...surfels import LAYOUT, quaternion_axes
+from ...quaternions import quaternion_axes
+from ...surfels import LAYOUT
 from ..attributes.blend_depths import LEAST_BLENDING
 from ..attributes.ellipses import ellipse_rotations, ellipse_scales
 from ..attributes.texture_mapping import BORDER, UV_FIELDS, from_uv_planes, is_mapped, slips, uv_planes

@@ -7,7 +7,8 @@ import math
 
 import numpy as np
 
-from ...surfels import OPTIONAL_LAYOUT, quaternion_axes
+from ...quaternions import quaternion_axes
+from ...surfels import OPTIONAL_LAYOUT
 from ..attributes.ellipses import ellipse_rotations
 from ..attributes.material_sampler import MaterialSampler, Samples
 from ..attributes.texture_mapping import BORDER, UV_FIELDS, fill_uvs

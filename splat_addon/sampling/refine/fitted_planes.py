@@ -15,7 +15,7 @@ from functools import partial
 import numpy as np
 
 from ...clip_lines import CLIP_FIELDS, CUT, are_reflex, unpack_lines
-from ...surfels import axes_columns
+from ...quaternions import axes_columns
 from ..attributes.blend_depths import LEAST_BLENDING
 from ..ldc.grid import Grid
 from ..mesh.triangle_mesh import triangle_chunks

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...surfels import axes_columns
+from ...quaternions import axes_columns
 from ..attributes.ellipses import MAX_STRETCH
 from ..edges.ordering import order_of
 from ..ldc.depth_cube import rows_of

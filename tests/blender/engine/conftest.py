@@ -7,7 +7,8 @@ import pytest
 
 from splat_addon.blender.geometry.attributes import write_surfels
 from splat_addon.blender.geometry.points_proxy import show_as_points
-from splat_addon.surfels import Surfels, axes_quaternions
+from splat_addon.quaternions import axes_quaternions
+from splat_addon.surfels import Surfels
 
 IMAGE_FORMATS = {"OPEN_EXR": "IMAGE", "OPEN_EXR_MULTILAYER": "MULTI_LAYER_IMAGE"}
 

@@ -7,7 +7,8 @@ import pytest
 from mathutils import Euler, Matrix
 
 from splat_addon.blender.geometry.attributes import read_surfels, write_surfels
-from splat_addon.surfels import Surfels, axes_quaternions
+from splat_addon.quaternions import axes_quaternions
+from splat_addon.surfels import Surfels
 
 TURN = Euler((0.5, 0.7, -0.4)).to_matrix().to_4x4()
 #: name: the parent's and the object's own matrix

@@ -17,12 +17,13 @@ from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
 from splat_addon.clip_lines import MAX_CUT, TURN, kept
+from splat_addon.quaternions import axes_quaternions
 from splat_addon.reference.methods.clip_lines import clipped_samples
 from splat_addon.reference.methods.plane import near_clipped_samples, splat_plane
 from splat_addon.rendering import EMPTY_DEPTH, Camera, Renderer, Scene, Settings
 from splat_addon.rendering.methods import METHODS
 from splat_addon.rendering.view import build_view
-from splat_addon.surfels import Surfels, axes_quaternions
+from splat_addon.surfels import Surfels
 
 SIZE = 48
 NEAR, FAR = 0.01, 1000.0
