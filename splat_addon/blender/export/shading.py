@@ -11,7 +11,7 @@ import bpy
 import numpy as np
 
 from ...rendering import Finish, Light, Material
-from ...rendering.upload.packing import reflectance
+from ...rendering.scene.material import reflectance
 from ..materials.mean_surfaces import mean_of
 from ..materials.node_products import linked
 from ..materials.node_trees import uses_nodes

@@ -11,7 +11,7 @@ import numpy as np
 from mathutils import Euler
 
 from ...rendering import Environment
-from ...rendering.upload.atlas import MAX_EDGE
+from ...rendering.device.interface import MAX_TEXTURE_EDGE
 from ..materials.node_trees import uses_nodes
 from ..materials.texture_images import UnreadableError, fingerprint, linear_pixels, settings_of
 from . import passed_over
@@ -86,11 +86,11 @@ def _read(picture: _Picture) -> tuple[Environment, tuple[str, ...]]:
     if bad.any():
         notes.append(f"The world's picture {image.name!r} has infinite or too large numbers; they count as 0")
         pixels = np.where(bad, 0, pixels)
-    steps = [-(-edge // MAX_EDGE) for edge in pixels.shape[:2]]
+    steps = [-(-edge // MAX_TEXTURE_EDGE) for edge in pixels.shape[:2]]
     if max(steps) > 1:
         pixels = _reduced(pixels, *steps)
         notes.append(
-            f"The world's picture {image.name!r} is larger than {MAX_EDGE:,} pixels, which graphics devices "
+            f"The world's picture {image.name!r} is larger than {MAX_TEXTURE_EDGE:,} pixels, which graphics devices "
             f"hold along an edge; it is shown at {pixels.shape[1]:,} x {pixels.shape[0]:,}"
         )
     return Environment(pixels, picture.rotation), tuple(notes)

@@ -11,7 +11,7 @@ import bpy
 import numpy as np
 
 from ...rendering import Matcap
-from ...rendering.upload.atlas import MAX_EDGE
+from ...rendering.device.interface import MAX_TEXTURE_EDGE
 from .texture_images import UnreadableError, fingerprint, linear_pixels, settings_of
 
 #: Places along each side that a multilayer file is read at: 0.7 s, once. Blender's own have 512 pixels, of which a
@@ -49,10 +49,10 @@ def matcap_of(image: bpy.types.Image) -> Matcap:
 
 def _matcap(pixels: np.ndarray, image: bpy.types.Image) -> Matcap:
     """Raises ValueError for a picture that is too large."""
-    if max(pixels.shape[:2]) > MAX_EDGE:
+    if max(pixels.shape[:2]) > MAX_TEXTURE_EDGE:
         raise ValueError(
-            f"The matcap {image.name!r} has {image.size[0]:,} x {image.size[1]:,} pixels, and {MAX_EDGE:,} along an "
-            "edge are the most; scale it down."
+            f"The matcap {image.name!r} has {image.size[0]:,} x {image.size[1]:,} pixels, and "
+            f"{MAX_TEXTURE_EDGE:,} along an edge are the most; scale it down."
         )
     return Matcap(pixels[..., :3])
 

@@ -19,6 +19,9 @@ import numpy as np
 #: format -> channels; RGBA16 stores 0 to 1 in multiples of 1 / 65535
 FORMATS = {"RGBA32F": 4, "RGBA16F": 4, "RGBA16": 4, "RG32F": 2, "R32F": 1, "DEPTH32F": 1}
 
+#: Texels along an edge of a texture that all tested backends support.
+MAX_TEXTURE_EDGE = 16384
+
 #: Programs that a device keeps: about twenty make a picture, but an animated setting may need new ones each frame.
 PROGRAMS = 512
 

@@ -12,6 +12,11 @@ from ...images import Image
 from .finish import PLAIN, Finish
 
 
+def reflectance(ior: float) -> float:
+    """Reflectance of a dielectric at normal incidence (Fresnel)."""
+    return ((ior - 1) / (ior + 1)) ** 2
+
+
 @dataclass(frozen=True)
 class Material:
     """How a surface reflects and emits light; its base colour is the surfels' own.

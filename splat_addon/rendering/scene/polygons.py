@@ -12,11 +12,11 @@ from functools import cached_property
 import numpy as np
 
 from ...surfels import Shape
+from ..device.interface import MAX_TEXTURE_EDGE
 
-#: Corners in a row of a texture, and the number of rows that all tested backends support.
+#: Corners in a row of a texture.
 CORNERS_PER_ROW = 512
-MAX_ROWS = 16384
-MAX_TRIANGLES = CORNERS_PER_ROW * MAX_ROWS // 3
+MAX_TRIANGLES = CORNERS_PER_ROW * MAX_TEXTURE_EDGE // 3
 TEXELS_PER_CORNER = 3
 #: Triangles, one after the other, that are left out of a picture together.
 BLOCK = 1024

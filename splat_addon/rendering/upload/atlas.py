@@ -15,12 +15,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...images import EXTENSIONS, Image, Pyramid
+from ..device.interface import MAX_TEXTURE_EDGE
 from ..scene import SurfaceTexture
 
-#: Maximum size of the atlas along each edge, supported by all tested backends. Textures that do not fit lose their
-#: finest level.
-MAX_EDGE = 16384
-#: Maximum texels of the atlas, 8 bytes each.
+#: Maximum texels of the atlas, 8 bytes each. Textures that do not fit lose their finest level.
 MAX_TEXELS = 1 << 26
 
 #: Storage format on the device, precise to 1 part in 2,048: a twentieth of a step of an 8-bit image. Values are rounded
@@ -91,7 +89,7 @@ def _first_levels(pyramids: list[Pyramid], max_texels: int) -> list[int]:
         largest = max(range(len(sizes)), key=lambda k: sizes[k][0] * sizes[k][1])
         # a third more for the coarser levels, and as much again for gaps
         area = 5 / 3 * sum(w * h for w, h in sizes)
-        if (area <= max_texels and max(max(s) for s in sizes) <= MAX_EDGE // 2) or max(sizes[largest]) == 1:
+        if (area <= max_texels and max(max(s) for s in sizes) <= MAX_TEXTURE_EDGE // 2) or max(sizes[largest]) == 1:
             break
         first[largest] += 1
     return first

@@ -16,6 +16,7 @@ from ...large_surfels import BLEND_STEPS, steps_of
 from ...quaternions import quaternion_axes
 from ...surfels import HIDDEN, OPAQUE, Surfels
 from ..scene import Finish, Material, Placed
+from ..scene.material import reflectance
 from .stored_order import SPLATS_PER_ROW
 
 TEXELS_PER_SPLAT = 4
@@ -159,11 +160,6 @@ def pack_own_materials(
         texels[:count, 1, :3] = surfels.emission[order]
     texels[:, 0, 3] = 1
     return texels.reshape(rows, -1, 4)
-
-
-def reflectance(ior: float) -> float:
-    """Reflectance of a dielectric at normal incidence (Fresnel)."""
-    return ((ior - 1) / (ior + 1)) ** 2
 
 
 def shared_material(instances: tuple[Placed, ...]) -> Material | None:

@@ -13,11 +13,10 @@ import numpy as np
 
 from ...hierarchy import Hierarchy
 from ...surfels import Surfels, concatenate
+from ..device.interface import MAX_TEXTURE_EDGE
 from .stored_order import SPLATS_PER_ROW
 
-#: Rows that all tested backends' textures support.
-MAX_ROWS = 16384
-PART = SPLATS_PER_ROW * MAX_ROWS
+PART = SPLATS_PER_ROW * MAX_TEXTURE_EDGE
 
 
 def places_in_parts(count: int) -> Iterator[slice]:
