@@ -14,7 +14,7 @@ import numpy as np
 from ...hierarchy import Hierarchy, Sight, cut_blocks, entries_of
 from ..device.interface import Pipeline, Target
 from ..device.interface import Texture as DeviceTexture
-from ..features import ARRIVES, DRAWN, DRAWS, INPUTS
+from ..features import ARRIVES, DRAWN, DRAWS, INPUTS, VALUES
 from ..identity import Identities
 from ..levels import is_worth_preparing, sight
 from ..methods import get_method
@@ -30,7 +30,7 @@ from ..upload.stored_order import SPLATS_PER_ROW, clipped_places
 from ..view import DrawItem, View, split_distances
 from .frame_plan import FramePlan
 from .graph import Loop, Pass, Pause, Step, Texture, of_pixels
-from .programs import describe, frame_value
+from .programs import describe
 from .uniforms import DRAW, VIEW, Block, std140
 
 #: What rejects hidden splats reads less than this many pixels beyond their ellipses.
@@ -110,7 +110,7 @@ class TileContext:
 
     def _block(self, block: Block) -> np.ndarray:
         if block not in self._blocks:
-            values = self._view_values if block is VIEW else [frame_value(name)(self) for _, name in block[2]]
+            values = self._view_values if block is VIEW else [VALUES[name][1](self) for _, name in block[2]]
             self._blocks[block] = std140(block, values)
         return self._blocks[block]
 

@@ -4,9 +4,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from functools import cache
-from typing import TYPE_CHECKING
 
 from ..device.interface import PipelineDescription
 from ..features import CONSTANTS, ORDER, VALUES
@@ -14,9 +13,6 @@ from .composition import DEFAULTS, compose
 from .frame_plan import FramePlan
 from .graph import Part, Pass
 from .uniforms import DRAW, VIEW, Block
-
-if TYPE_CHECKING:
-    from .executor import TileContext
 
 
 def describe(plan: FramePlan, p: Pass, vertex: str = "fullscreen.vert", *variants: str) -> PipelineDescription:
@@ -59,11 +55,6 @@ def _taken(plan: FramePlan, p: Pass, variants: Iterable[str]) -> list[Part]:
 def _ordered(words: Iterable[str]) -> tuple[str, ...]:
     """Features in the order in which they act, then the other words."""
     return tuple(sorted(words, key=lambda word: (ORDER.get(word, len(ORDER)), word)))
-
-
-def frame_value(name: str) -> Callable[[TileContext], object]:
-    """The function that computes a value of the frame's block for a tile."""
-    return VALUES[name][1]
 
 
 @cache
