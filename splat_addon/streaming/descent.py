@@ -17,7 +17,7 @@ from ..hierarchy.cuts import Boxes, may_be_seen, pixels_of_errors
 from .pages import Pages
 
 
-class Cut(NamedTuple):
+class Descent(NamedTuple):
     """drawn: numbers of the blocks to draw. wanted: pages that would make it finer, those of the largest errors
     first."""
 
@@ -25,7 +25,7 @@ class Cut(NamedTuple):
     wanted: np.ndarray
 
 
-def descend(blocks: Blocks, pages: Pages, sight: Sight, beside: float | None, most: int | None = None) -> Cut:
+def descend(blocks: Blocks, pages: Pages, sight: Sight, beside: float | None, most: int | None = None) -> Descent:
     """The cut as far as pages are there, which are noted as used.
 
     beside: blocks outside the picture may be off by this many times the tolerance; None leaves them out. most: rows
@@ -60,9 +60,9 @@ def descend(blocks: Blocks, pages: Pages, sight: Sight, beside: float | None, mo
         goes_on = goes[owners]
         front, pixels = kept[goes_on], own_pixels[goes_on]
     if not drawn:
-        return Cut(front, front)
+        return Descent(front, front)
     rows = np.concatenate(wanted)[np.argsort(-np.concatenate(urgency), kind="stable")]
-    return Cut(np.concatenate(drawn), pages.missing(blocks.first[rows], blocks.last[rows]))
+    return Descent(np.concatenate(drawn), pages.missing(blocks.first[rows], blocks.last[rows]))
 
 
 def _rows(blocks: Blocks, numbers: np.ndarray) -> np.ndarray:

@@ -16,13 +16,13 @@ from mathutils import Matrix
 
 from ...sampling import Surface, TriangleMesh, have_same_values, joined, transformed
 from ..geometry.mesh_extraction import ExtractedMesh, read_mesh
-from ..geometry.sources import Piece, Reader, Shown, shown_by, why_nothing
+from ..geometry.sources import Piece, Reader, ShownMeshes, shown_by, why_nothing
 from ..materials.material_surfaces import Unread
 from .placement import relative, without_scale, without_shear
 
 
 @dataclass(frozen=True, eq=False)
-class Gathered:
+class GatheredMesh:
     """mesh: of all sources, in the space of `matrix_world`.
     materials: the materials that its indices refer to.
     unread: inputs of materials that could not be read.
@@ -48,7 +48,7 @@ def frame_of(source: bpy.types.Object, in_world_units: bool) -> Matrix:
 
 def gather(
     sources: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph, in_world_units: bool, read: Reader = read_mesh
-) -> Gathered:
+) -> GatheredMesh:
     """The surfaces of all sources as one mesh in the frame of the first. read: returns an `ExtractedMesh`.
 
     Raises ValueError with a sentence if there are no faces, or for an impossible transform.
@@ -70,10 +70,10 @@ def gather(
         ]
     placed = [transformed(mesh, relative(matrix, frames[0])) for mesh, piece in meshes for matrix in piece.matrices]
     others = frozenset().union(*(each.others for each in shown))
-    return Gathered(joined(placed), frames[0], materials, unread, list(dict.fromkeys(notes)), others)
+    return GatheredMesh(joined(placed), frames[0], materials, unread, list(dict.fromkeys(notes)), others)
 
 
-def _why_nothing(sources: list[bpy.types.Object], shown: list[Shown]) -> str:
+def _why_nothing(sources: list[bpy.types.Object], shown: list[ShownMeshes]) -> str:
     points = sum(len(piece.content.triangles.positions) for each in shown for piece in each.pieces)
     unseen = dict.fromkeys(sentence for each in shown for piece in each.pieces for sentence in piece.content.unseen)
     if unseen:

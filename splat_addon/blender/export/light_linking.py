@@ -11,7 +11,7 @@ import bpy
 from ...rendering.scene.light import MAX_LIGHT_SETS
 
 
-class Receivers(NamedTuple):
+class LinkedReceivers(NamedTuple):
     """included: names of the objects that a light lights, or None for all. excluded: names of objects that it does not
     light."""
 
@@ -25,10 +25,10 @@ class Receivers(NamedTuple):
         return self.included is None or bool(self.included.intersection(names))
 
 
-EVERYTHING = Receivers(None, frozenset())
+EVERYTHING = LinkedReceivers(None, frozenset())
 
 
-def receivers_of(light: bpy.types.Object) -> Receivers:
+def receivers_of(light: bpy.types.Object) -> LinkedReceivers:
     """The receivers from a light object's receiver collection; an empty collection has no effect."""
     collection = light.light_linking.receiver_collection if light.light_linking else None
     if collection is None:
@@ -38,7 +38,7 @@ def receivers_of(light: bpy.types.Object) -> Receivers:
         states[member.light_linking.link_state].add(object_.name)
     for child, member in zip(collection.children, collection.collection_children, strict=True):
         states[member.light_linking.link_state].update(o.name for o in child.all_objects)
-    return Receivers(frozenset(states["INCLUDE"]) or None, frozenset(states["EXCLUDE"]))
+    return LinkedReceivers(frozenset(states["INCLUDE"]) or None, frozenset(states["EXCLUDE"]))
 
 
 class LightSets:

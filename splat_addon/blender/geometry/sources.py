@@ -25,7 +25,7 @@ _SURFACES_BY_MODIFIERS = frozenset({"POINTCLOUD", "CURVES"})
 
 
 def has_surfaces(source: bpy.types.Object) -> bool:
-    """Whether `Shown` may find a surface in this kind of object; surfels have none."""
+    """Whether `shown_by` may find a surface in this kind of object; surfels have none."""
     if source.type == "EMPTY":
         return source.instance_type == "COLLECTION" and source.instance_collection is not None
     if source.type in _SURFACES_BY_MODIFIERS:
@@ -47,7 +47,7 @@ class Piece:
 
 
 @dataclass(eq=False)
-class Shown:
+class ShownMeshes:
     """What one object shows.
 
     others: session_uids of further objects that it shows, so that it changes when they do.
@@ -75,10 +75,10 @@ _FLATTENED = "Left out {} instance{} with a scale of 0 on some axis"
 _SURFELS = "Left out {} instance{} of surfels, which are not sampled again"
 
 
-def shown_by(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph, read: Reader) -> Shown:
+def shown_by(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph, read: Reader) -> ShownMeshes:
     """Every mesh that the source shows in the depsgraph; `read` is called once per mesh, however often it is
     instanced."""
-    shown, pieces = Shown(), {}
+    shown, pieces = ShownMeshes(), {}
     for entry in depsgraph.object_instances:
         if owner_of(entry) != source or not entry.show_self:
             continue
@@ -151,7 +151,7 @@ def _stem(name: str) -> str:
     return head if dot and tail.isdigit() else name
 
 
-def why_nothing(source: bpy.types.Object, shown: Shown, points: int) -> str:
+def why_nothing(source: bpy.types.Object, shown: ShownMeshes, points: int) -> str:
     """The sentence for a source without faces. points: number of vertices in its meshes."""
     if source.type == "META":
         family = sorted(other.name for other in metaball_family(source) if other != source)
