@@ -12,14 +12,17 @@ _PLACE = ("location", "rotation", "scale", "delta_", "pose")
 
 
 def animated_paths(owner: bpy.types.ID) -> Iterator[str]:
-    """The data paths of an object's or data-block's properties that have keyframes or drivers, also of the NLA."""
+    """The data paths of an object's or data-block's properties that have keyframes or drivers, also of the NLA; what
+    is muted does not count, nor what an action that several use has for the others."""
     animation = owner.animation_data
     if animation is None:
         return
-    yield from (driver.data_path for driver in animation.drivers)
-    for action in (animation.action, *(strip.action for track in animation.nla_tracks for strip in track.strips)):
-        for layer in action.layers if action else ():
-            yield from (curve.data_path for strip in layer.strips for bag in strip.channelbags for curve in bag.fcurves)
+    yield from (driver.data_path for driver in animation.drivers if not driver.mute)
+    strips = (strip for track in animation.nla_tracks if not track.mute for strip in track.strips if not strip.mute)
+    for user in (animation, *strips):
+        parts = (part for layer in user.action.layers for part in layer.strips) if user.action else ()
+        for bag in (bag for part in parts for bag in part.channelbags if bag.slot_handle == user.action_slot_handle):
+            yield from (curve.data_path for curve in bag.fcurves if not curve.mute)
 
 
 def is_moving(source: bpy.types.Object | None) -> bool:

@@ -101,6 +101,33 @@ def test_they_are_hidden_when_their_source_is(is_animated, source, square, conve
     assert seen == {1: False, 9: False, 10: True}
 
 
+def hide_another(source):
+    """An object that uses the source's action is hidden by it."""
+    other = bpy.data.objects.new("other", None)
+    hide_first(other)
+    action = other.animation_data.action
+    source.animation_data_create().action = action
+    source.animation_data.action_slot = action.slots.new("OBJECT", source.name)
+    source.keyframe_insert("location", frame=1)
+
+
+def hide_no_more(source):
+    hide_first(source)
+    (bag,) = source.animation_data.action.layers[0].strips[0].channelbags
+    for curve in bag.fcurves:
+        curve.mute = True
+
+
+@pytest.mark.parametrize("animate", [hide_another, hide_no_more])
+def test_they_stay_visible_if_nothing_hides_their_source(animate, square, convert):
+    """The conversion hides the source itself, which no animation undoes."""
+    animate(square)
+    (made,) = convert(resolution=8, source="HIDE")
+    for frame in (1, 10):
+        bpy.context.scene.frame_set(frame)
+        assert square.hide_render and not made.hide_render
+
+
 def test_a_frozen_copy_is_not_hidden(square, convert):
     hide_first(square)
     (made,) = convert(resolution=8, follow=False)
