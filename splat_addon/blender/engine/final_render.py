@@ -159,7 +159,8 @@ _FLATTENED = "Objects with a scale of 0 on some axis are left out; give every ax
 
 
 def _read(depsgraph, resources: _Resources):
-    resources.store.begin_frame(are_materials_edited=resources.are_images_edited)
+    are_edited = resources.are_images_edited
+    resources.store.begin_frame(are_materials_edited=are_edited, is_sky_edited=are_edited)
     resources.live_meshes.begin_frame()
     if resources.are_images_edited:
         resources.live_meshes.forget_images()

@@ -45,16 +45,35 @@ def update(engine: bpy.types.RenderEngine, context: bpy.types.Context, depsgraph
         state.live_meshes.forget_images()
     # whatever changes with each picture would never be whole
     state.store.is_sliced = state.arrival.loading.is_in_background = not _is_playing(context)
-    _read(state, depsgraph, changed, are_materials_edited)
-    matcap_images.doubt()
+    _read(state, depsgraph, changed, are_materials_edited, _is_sky_edited(depsgraph))
+    if not _only_moves_objects(depsgraph):
+        matcap_images.doubt()
     # A multilayer matcap is read through a data-block, which Blender does not allow to be created while drawing.
     viewport_settings(depsgraph.scene)
     _say(engine, state)
 
 
-def _read(state: _State, depsgraph: bpy.types.Depsgraph, changed: set[str], are_materials_edited: bool = False) -> None:
+def _is_sky_edited(depsgraph: bpy.types.Depsgraph) -> bool:
+    """Whether the world's picture may be another one. Blender reports the world if a picture in it was reloaded."""
+    return any(isinstance(update.id, bpy.types.World | bpy.types.Image) for update in depsgraph.updates)
+
+
+def _only_moves_objects(depsgraph: bpy.types.Depsgraph) -> bool:
+    """Whether an update is a step of a drag, in which nobody edits images, and which must not wait for them."""
+    return len(depsgraph.updates) > 0 and all(
+        isinstance(update.id, bpy.types.Object) and not update.is_updated_geometry for update in depsgraph.updates
+    )
+
+
+def _read(
+    state: _State,
+    depsgraph: bpy.types.Depsgraph,
+    changed: set[str],
+    are_materials_edited: bool = False,
+    is_sky_edited: bool = False,
+) -> None:
     """Read the scene; of its meshes only those that are named in `changed`, and more of those that take long."""
-    state.store.begin_frame(changed, are_materials_edited)
+    state.store.begin_frame(changed, are_materials_edited, is_sky_edited)
     state.live_meshes.begin_frame(None if are_materials_edited else changed)
     state.scene, notes = export_scene(depsgraph, state.store, state.live_meshes)
     state.store.forget_unused()

@@ -108,12 +108,15 @@ class SurfelStore:
         kept = self._kept[key]
         return kept.surfels, kept.skipped, kept.strayed
 
-    def begin_frame(self, changed: set[str] | None = None, are_materials_edited: bool = False) -> None:
+    def begin_frame(
+        self, changed: set[str] | None = None, are_materials_edited: bool = False, is_sky_edited: bool = False
+    ) -> None:
         """Start a frame: meshes named in `changed` (None: all) are read again when next requested.
 
-        are_materials_edited: whether materials, worlds or images may have been edited.
+        are_materials_edited: whether materials or their images may have been edited. is_sky_edited: the same of the
+            world's.
         """
-        self.world.begin_frame(are_materials_edited)
+        self.world.begin_frame(is_sky_edited)
         self.overridden.begin_frame()
         self.streams.begin_frame()
         self.textures.begin_frame(are_materials_edited, is_told=changed is not None)

@@ -5,6 +5,7 @@ import bpy
 import numpy as np
 import pytest
 
+from splat_addon.blender.engine import viewport
 from splat_addon.blender.export.scene import Notes, SurfelStore
 
 
@@ -128,7 +129,7 @@ def read_world(scene):
 
     def read(is_edited=False):
         notes = Notes()
-        store.begin_frame(set(), are_materials_edited=is_edited)
+        store.begin_frame(set(), is_sky_edited=is_edited)
         return store.world.read(scene.world, notes)["environment"], notes.sentences()
 
     return read
@@ -171,6 +172,44 @@ def test_what_a_world_s_picture_lacks_is_said_in_each_frame(add_picture, read_wo
     image.save()
     first, second = read_world()[1], read_world()[1]
     assert "The world's picture 'broken' has infinite or too large numbers; they count as 0" in first == second
+
+
+@pytest.fixture
+def told(scene, add_square, add_picture):
+    """told(edit) -> whether a view is told that the sky may be another one, and that only objects move. edit: of the
+    square, its Principled node, and the world's picture."""
+    square, image, found = add_square(), add_picture((1, 0, 0, 1)), []
+    square.data.materials.append(bpy.data.materials.new("material"))
+    square.active_material.use_nodes = True
+
+    def note(scene, depsgraph):
+        found.append((viewport._is_sky_edited(depsgraph), viewport._only_moves_objects(depsgraph)))
+
+    def tell(edit):
+        bpy.context.view_layer.update()
+        bpy.app.handlers.depsgraph_update_post.append(note)
+        try:
+            edit(square, square.active_material.node_tree.nodes["Principled BSDF"], image)
+            bpy.context.view_layer.update()
+        finally:
+            bpy.app.handlers.depsgraph_update_post.remove(note)
+        return found[-1]
+
+    return tell
+
+
+@pytest.mark.parametrize(
+    ("edit", "expected"),
+    [
+        (lambda square, shader, image: square.location.__setitem__(0, 1), (False, True)),
+        (lambda square, shader, image: shader.inputs[0].default_value.__setitem__(0, 0.1), (False, False)),
+        (lambda square, shader, image: image.reload(), (True, False)),
+    ],
+    ids=["move", "paint", "reload"],
+)
+def test_pictures_are_looked_at_again_only_after_edits_of_their_own(edit, expected, told):
+    """Looking at 2,048 pixels squared of 8 bits takes 0.2 s, which a drag must not wait for."""
+    assert told(edit) == expected
 
 
 def mixed(world, kind, color, factor=None):
