@@ -86,7 +86,9 @@ def not_bent(made: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> str | No
         return why and f"What bends {source.name!r} does not bend its surfels: {why}"
     if not (modifier.show_render if depsgraph.mode == "RENDER" else modifier.show_viewport):
         return None
-    count, bound = len(source.evaluated_get(depsgraph).data.vertices), _given(modifier, "Vertices")
+    # it may have been converted to a curve, or to an object of another type
+    vertices = getattr(source.evaluated_get(depsgraph).data, "vertices", ())
+    count, bound = len(vertices), _given(modifier, "Vertices")
     if count == bound:
         return None
     return (

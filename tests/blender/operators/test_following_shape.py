@@ -269,6 +269,17 @@ def test_a_render_names_a_source_that_has_other_vertices_now(source, sheet, conv
     assert notes_of_a_render() == []
 
 
+def test_a_render_names_a_source_that_became_a_curve(sheet, convert):
+    add_keys(sheet)
+    convert(density="RESOLUTION", resolution=16)
+    bpy.context.view_layer.objects.active = sheet
+    sheet.select_set(True)
+    bpy.ops.object.convert(target="CURVE")
+    assert sheet.type == "CURVE"
+    expected = "What bends 'Sheet' does not bend its surfels now: it has 0 vertices and had 81"
+    assert [note[: len(expected)] for note in notes_of_a_render()] == [expected]
+
+
 @pytest.mark.parametrize("follow", [True, False])
 def test_a_render_names_a_modifier_that_makes_other_faces(follow, sheet, convert):
     """It is named also if it was animated after the conversion, but not for a frozen copy."""
