@@ -55,7 +55,8 @@ class PointsReport:
         }
         estimated = "; ".join(what for what, count in made_up.items() if count)
         bright = (
-            f"colours above {BRIGHT_COLOR:g} of {self.bright_colors:,} points; they are scene-linear and white is 1"
+            f"the colours of {self.bright_colors:,} points that exceed {BRIGHT_COLOR:g}; colours are taken as "
+            "scene-linear, where white is 1"
         )
         said = {"Skipped": skipped, "Kept": bright if self.bright_colors else "", "Estimated": estimated}
         return tuple(f"{verb} {what}" for verb, what in said.items() if what)

@@ -109,7 +109,7 @@ def test_float_colours_far_above_white_are_a_warning(import_ply, tmp_path, capfd
     head = ["ply", "format ascii 1.0", "element vertex 1", *(f"property float {n}" for n in names.split())]
     (tmp_path / "c.ply").write_text("\n".join([*head, "end_header", "0 0 0 0 0 1 1 200 10 10", ""]))
     import_ply(tmp_path / "c.ply")
-    assert "Warning: Kept colours above 10 of 1 points" in capfd.readouterr().out
+    assert "Warning: Kept the colours of 1 points that exceed 10" in capfd.readouterr().out
 
 
 def test_thick_gaussians_are_counted_and_left_out(import_ply, surfels_of, tmp_path, capfd):

@@ -138,7 +138,10 @@ def test_colours_far_above_white_are_counted_and_said(grid_points):
     colors[:7, 1] = 100.0
     surfels, report = surfels_from_points(grid_points(20, 20), colors=colors)
     assert report.bright_colors == 7 and surfels.colors.max() == 100
-    assert "Kept colours above 10 of 7 points; they are scene-linear and white is 1" in report.notes()
+    assert (
+        "Kept the colours of 7 points that exceed 10; colours are taken as scene-linear, where white is 1"
+        in report.notes()
+    )
 
 
 def test_one_point_with_everything_given_is_enough():
