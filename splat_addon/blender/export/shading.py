@@ -118,7 +118,7 @@ def shading_material(material: bpy.types.Material | None, notes, own: Collection
             notes.add(f"The material {material.name!r} {why}")
         return Material(index=material.pass_index)
     mixed = [part for part in parts(shader) if part.shader.node.type not in CLEAR] if shader else []
-    known = [part for part in mixed if part.shader.node.type in _SHADERS and not part.shader.node.mute]
+    known = [part for part in mixed if part.shader.node.type in _SHADERS]
     if not known:
         notes.add(
             f"The material {material.name!r} has no shader at its output that this engine supports; the default "

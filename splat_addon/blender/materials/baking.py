@@ -15,10 +15,8 @@ from ...sampling import Surface
 from ...surfels import OPTIONAL_LAYOUT, Surfels
 from .bake_scene import BakeScene
 from .material_surfaces import Unread
+from .mean_surfaces import LEAST_OPACITY
 from .surface_shaders import SHADERS, surface_shader
-
-#: Coverage below which a colour is invisible.
-_LEAST_OPACITY = 1e-4
 
 #: Surfels per bake: four million pixels, 64 MB.
 _CHUNK = 1_000_000
@@ -104,7 +102,7 @@ def _uncover(arrays: dict[str, np.ndarray], slots: np.ndarray, what: Bakeable) -
         rows = np.isin(slots, [k for k, material in enumerate(what.materials) if material in wanted])
         if rows.any():
             share = opacity[rows]
-            weighted[rows] = np.where(share > _LEAST_OPACITY, weighted[rows] / np.maximum(share, _LEAST_OPACITY), 0)
+            weighted[rows] = np.where(share > LEAST_OPACITY, weighted[rows] / np.maximum(share, LEAST_OPACITY), 0)
             colors[rows, 3:] = share
 
 

@@ -16,7 +16,7 @@ from .surface_shaders import CLEAR, SHADERS, Part, Shader, parts
 from .texture_images import UnreadableError
 
 #: Opacity below which a colour is invisible.
-_LEAST_OPACITY = 1e-4
+LEAST_OPACITY = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +44,7 @@ def mean_of(shader: Shader) -> Mean:
         color += part.share * opacity * _value(part, "color", 0.8, unsure)
         emission += part.share * _value(part, "emission", 0.0, unsure)
     opacity = float(np.clip(1 - through, 0, 1))
-    color, emission = (part / opacity if opacity > _LEAST_OPACITY else np.zeros(3) for part in (color, emission))
+    color, emission = (part / opacity if opacity > LEAST_OPACITY else np.zeros(3) for part in (color, emission))
     sent = Channel(tuple(emission.tolist())) if emission.any() else None
     return Mean(Surface(Channel((*color.tolist(), opacity)), emission=sent), frozenset(unsure), only)
 

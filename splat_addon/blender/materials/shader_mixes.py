@@ -11,7 +11,7 @@ from __future__ import annotations
 import bpy
 
 from .node_products import linked, passed_through_link, within
-from .surface_shaders import CLEAR, Shader, parts
+from .surface_shaders import CLEAR, SHADERS, Shader, parts
 
 Node = bpy.types.Node
 Tree = bpy.types.NodeTree
@@ -20,9 +20,6 @@ Socket = bpy.types.NodeSocket
 Given = Socket | tuple[float, float, float]
 
 _BLACK, _WHITE = (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)
-
-#: The emission of a shader is the product of these.
-_EMISSION_SOCKETS = {"EMISSION": ("Color", "Strength"), "BSDF_PRINCIPLED": ("Emission Color", "Emission Strength")}
 
 
 def channels(shader: Shader) -> list[str]:
@@ -99,7 +96,7 @@ def _let_through(tree: Tree, end: Node) -> Given:
 
 
 def _emission(tree: Tree, end: Node) -> Given:
-    names = _EMISSION_SOCKETS.get(end.type)
+    names = SHADERS.get(end.bl_idname, {}).get("emission")
     if names is None:
         return _BLACK
     return _mixed(tree, "MULTIPLY", *(_given(end.inputs[name]) for name in names))

@@ -18,8 +18,8 @@ Found = TypeVar("Found")
 
 class Planning:
     """viewers: the cameras that shadow maps serve. is_added_up: whether the picture is a sample of a refining view.
-    samples: number of samples that show the scene. is_repeatable: whether the picture is the same
-        whatever was drawn before.
+    samples: number of samples that show the scene. is_repeatable: whether the picture is the same whatever was drawn
+        before.
 
     facts: as in `FramePlan`; features add to them.
     """
