@@ -120,7 +120,7 @@ def hide_no_more(source):
 
 @pytest.mark.parametrize("animate", [hide_another, hide_no_more])
 def test_they_stay_visible_if_nothing_hides_their_source(animate, square, convert):
-    """The conversion hides the source itself, which no animation undoes."""
+    """The conversion itself has hidden the source, and no animation shows it again."""
     animate(square)
     (made,) = convert(resolution=8, source="HIDE")
     for frame in (1, 10):
