@@ -13,7 +13,6 @@ import numpy as np
 from ...rendering import Finish, Light, Material
 from ...rendering.scene.material import reflectance
 from ..materials.mean_surfaces import mean_of
-from ..materials.node_products import linked
 from ..materials.node_trees import uses_nodes
 from ..materials.surface_shaders import CLEAR, Part, Shader, parts, surface_shader, why_unseen
 from . import passed_over
@@ -73,19 +72,19 @@ def _emission(light: bpy.types.Light, notes) -> np.ndarray:
     """(3,) colour times strength of the light's Emission node, which multiplies the light's own; 1 without nodes."""
     if not uses_nodes(light):
         return np.ones(3)
-    node = output_source(light.node_tree, "OUTPUT_LIGHT", "EMISSION")
-    if node is None:
+    shader = surface_shader(light)
+    if shader is None or shader.node.type != "EMISSION" or shader.node.mute:
         notes.add(f"The light {light.name!r} has no Emission node at its output; its nodes are ignored")
         return np.ones(3)
-    return np.array(color_times_strength(node, f"The light {light.name!r}", notes))
+    return np.array(color_times_strength(shader, f"The light {light.name!r}", notes))
 
 
-def color_times_strength(node: bpy.types.Node, owner: str, notes) -> tuple[float, float, float]:
-    """Colour times strength of a Background or Emission node. owner: the subject of a sentence."""
-    color, strength = node.inputs["Color"], node.inputs["Strength"]
-    if color.is_linked or strength.is_linked:
-        notes.add(f"{owner} is textured; its {node.bl_label} node's plain colour and strength are used")
-    return tuple(c * strength.default_value for c in color.default_value[:3])
+def color_times_strength(shader: Shader, owner: str, notes) -> tuple[float, float, float]:
+    """Colour times strength of a Background or Emission shader. owner: the subject of a sentence."""
+    if shader.socket("Color").is_linked or shader.socket("Strength").is_linked:
+        notes.add(f"{owner} is textured; its {shader.node.bl_label} node's plain colour and strength are used")
+    (strength,) = shader.plain("Strength").value
+    return tuple(channel * strength for channel in shader.plain("Color").value)
 
 
 BLACK = (0.0, 0.0, 0.0)
@@ -265,11 +264,3 @@ def _levelled(ior: float, level: float) -> float:
     """The index of refraction whose reflectance at normal incidence is that of `ior` times 2 `level`, as in Cycles."""
     root = min(2 * level * reflectance(ior), 0.999) ** 0.5
     return (1 + root) / (1 - root)
-
-
-def output_source(tree: bpy.types.NodeTree, output_type: str, *wanted: str) -> bpy.types.Node | None:
-    """The node of one of the types `wanted` that feeds the tree's active output, or None."""
-    for node in tree.nodes:
-        if node.type == output_type and node.is_active_output and (found := linked(node.inputs["Surface"])):
-            return found[0] if found[0].type in wanted and not found[0].mute else None
-    return None

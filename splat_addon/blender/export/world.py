@@ -13,10 +13,11 @@ from mathutils import Euler
 from ...rendering import Environment
 from ...rendering.device.interface import MAX_TEXTURE_EDGE
 from ..materials.node_trees import uses_nodes
+from ..materials.surface_shaders import Part
 from ..materials.texture_images import UnreadableError, fingerprint, linear_pixels, settings_of
 from . import passed_over
 from .shading import BLACK, MAX_RADIANCE, color_times_strength, finite_radiance
-from .world_shaders import Background, backgrounds
+from .world_shaders import backgrounds
 
 Color = tuple[float, float, float]
 
@@ -40,7 +41,10 @@ class WorldStore:
             notes.add(sentence)
         if not uses_nodes(world):
             return {"world": tuple(world.color)}
-        (light, picture), (seen, seen_picture) = (_sum(each, world, notes) for each in backgrounds(world, notes))
+        said = set()
+        (light, picture), (seen, seen_picture) = (_sum(each, world, said) for each in backgrounds(world, said))
+        for sentence in sorted(said):
+            notes.add(sentence)
         fields = {"world": light, "environment": self._environment(picture, notes) if picture else None}
         if seen_picture is not None and not _are_same(picture, seen_picture):
             notes.add(
@@ -103,20 +107,20 @@ def _reduced(pixels: np.ndarray, down: int, across: int) -> np.ndarray:
     return whole.reshape(rows, down, columns, across, 3).mean(axis=(1, 3))
 
 
-def _sum(added: list[Background], world: bpy.types.World, notes) -> tuple[Color, _Picture | None]:
+def _sum(added: list[Part], world: bpy.types.World, notes) -> tuple[Color, _Picture | None]:
     """The radiance of a sum of backgrounds, and a picture that is multiplied by it if there is one."""
     owner, total = f"The world {world.name!r}", np.zeros(3)
-    for node, share in added:
-        picture = _picture(node.inputs["Color"], world, notes)
+    for part in added:
+        picture = _picture(part.shader.socket("Color"), world, notes)
         if picture is None:
-            total += share * np.array(color_times_strength(node, owner, notes))
+            total += part.share * np.array(color_times_strength(part.shader, owner, notes))
             continue
         if len(added) > 1:
             notes.add(f"{owner} mixes a picture with other backgrounds; only the picture is drawn, with its share")
-        strength = node.inputs["Strength"]
-        if strength.is_linked:
+        if part.shader.socket("Strength").is_linked:
             notes.add(f"{owner} has a textured strength; the socket's plain value is used")
-        return finite_radiance((share * strength.default_value,) * 3, owner, notes), picture
+        (strength,) = part.shader.plain("Strength").value
+        return finite_radiance((part.share * strength,) * 3, owner, notes), picture
     return finite_radiance(tuple(total.tolist()), owner, notes), None
 
 

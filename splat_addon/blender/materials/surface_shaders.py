@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import bpy
@@ -86,9 +86,9 @@ class Shader:
         return shader_at(socket, self.groups)
 
 
-def surface_shader(material: bpy.types.Material) -> Shader | None:
+def surface_shader(owner: bpy.types.Material | bpy.types.World | bpy.types.Light) -> Shader | None:
     """The shader at the surface of the active output."""
-    output = material.node_tree.get_output_node("ALL")
+    output = owner.node_tree.get_output_node("ALL")
     return shader_at(output.inputs["Surface"]) if output else None
 
 
@@ -137,12 +137,28 @@ class Part:
     is_sure: bool
 
 
+def mix_factor(mix: Shader) -> tuple[float, bool]:
+    """The factor of a Mix Shader, 0 to 1, and whether it is a constant; if not, its socket's value."""
+    socket = mix.node.inputs[0]
+    try:
+        read = product(socket, mix.groups)
+    except UnreadableError:
+        read = None
+    is_constant = read is not None and not read.sources
+    value = read.value[0] if is_constant else socket.default_value
+    return min(max(value, 0.0), 1.0), is_constant
+
+
 def parts(
-    shader: Shader, share: float = 1.0, is_sure: bool = True, followed: tuple[Shader, ...] = ()
+    shader: Shader,
+    share: float = 1.0,
+    is_sure: bool = True,
+    followed: tuple[Shader, ...] = (),
+    factor_of: Callable[[Shader], tuple[float, bool]] = mix_factor,
 ) -> Iterator[Part]:
     """The shaders that a tree of shaders mixes and adds, without those whose share is 0.
 
-    followed: the shaders that this one is mixed into; a ring of them ends.
+    followed: the shaders that this one is mixed into; a ring of them ends. factor_of: as `mix_factor`.
     """
     node = shader.node
     if (is_sure and share == 0) or shader in followed:
@@ -153,7 +169,7 @@ def parts(
     elif node.type == "ADD_SHADER":
         sockets = [(socket, share, is_sure) for socket in node.inputs]
     elif node.type == "MIX_SHADER":
-        factor, is_constant = _factor(shader)
+        factor, is_constant = factor_of(shader)
         shares = (share * (1 - factor), share * factor)
         sockets = [(s, part, is_sure and is_constant) for s, part in zip(node.inputs[1:], shares, strict=True)]
     else:
@@ -162,16 +178,4 @@ def parts(
     for socket, part, sure in sockets:
         found = shader.feeding(socket)
         if found is not None:
-            yield from parts(found, part, sure, (*followed, shader))
-
-
-def _factor(mix: Shader) -> tuple[float, bool]:
-    """The factor of a Mix Shader, 0 to 1, and whether it is a constant; if not, its socket's value."""
-    socket = mix.node.inputs[0]
-    try:
-        read = product(socket, mix.groups)
-    except UnreadableError:
-        read = None
-    is_constant = read is not None and not read.sources
-    value = read.value[0] if is_constant else socket.default_value
-    return min(max(value, 0.0), 1.0), is_constant
+            yield from parts(found, part, sure, (*followed, shader), factor_of)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The background shows the world or is transparent, and edges in front of it blend with it correctly."""
 
+from itertools import pairwise
+
 import bpy
 import numpy as np
 import pytest
@@ -256,6 +258,22 @@ def test_one_background_lights_and_the_camera_sees_another(
     assert np.allclose(middle / middle[2], (0.25, 0.5, 1), atol=0.02) and middle[2] > 0.6
 
 
+def test_a_background_in_a_group_is_drawn_with_the_group_s_values(scene, add_camera, add_world, picture):
+    add_camera()
+    tree, group = add_world((0, 0, 0)).node_tree, bpy.data.node_groups.new("sky", "ShaderNodeTree")
+    group.interface.new_socket("Tint", in_out="INPUT", socket_type="NodeSocketColor")
+    group.interface.new_socket("Sky", in_out="OUTPUT", socket_type="NodeSocketShader")
+    inner = [group.nodes.new(kind) for kind in ("NodeGroupInput", "ShaderNodeBackground", "NodeGroupOutput")]
+    for source, target in pairwise(inner):
+        group.links.new(source.outputs[0], target.inputs[0])
+    node = tree.nodes.new("ShaderNodeGroup")
+    node.node_tree, inner[1].inputs["Strength"].default_value = group, 2
+    node.inputs["Tint"].default_value = (0.1, 0.2, 0.3, 1)
+    tree.links.new(node.outputs[0], tree.nodes["World Output"].inputs["Surface"])
+    scene.render.film_transparent = False
+    assert np.allclose(picture(), (0.2, 0.4, 0.6, 1))
+
+
 def test_a_world_s_unknown_shaders_are_named(scene, add_camera, add_world, picture, said):
     add_camera()
     tree = mixed(add_world((0.2, 0.4, 0.8)), "ShaderNodeMixShader", (0.5, 0.1, 0.2))
@@ -267,3 +285,4 @@ def test_a_world_s_unknown_shaders_are_named(scene, add_camera, add_world, pictu
     words = said()
     assert "The world 'world' has a Transparent BSDF node, which counts as black" in words
     assert "The world 'world' mixes its shaders by a Noise Texture node; the plain value" in words
+    assert "(2 times)" not in words

@@ -96,6 +96,18 @@ def test_a_light_s_emission_node_scales_it_as_in_cycles(kind, add_light, assert_
     assert_as_cycles(IOR=1.0)
 
 
+def test_a_light_s_emission_node_may_be_in_a_group(add_light, assert_as_cycles):
+    tree = add_light("SUN", 20, (0, 1, 2), (0.3, 0, 0), {"use_nodes": True}).data.node_tree
+    group, node = bpy.data.node_groups.new("lamp", "ShaderNodeTree"), tree.nodes.new("ShaderNodeGroup")
+    group.interface.new_socket("Light", in_out="OUTPUT", socket_type="NodeSocketShader")
+    emission = group.nodes.new("ShaderNodeEmission")
+    emission.inputs["Color"].default_value = (0.9, 0.4, 0.1, 1)
+    group.links.new(emission.outputs[0], group.nodes.new("NodeGroupOutput").inputs[0])
+    node.node_tree = group
+    tree.links.new(node.outputs[0], tree.get_output_node("ALL").inputs["Surface"])
+    assert_as_cycles(IOR=1.0)
+
+
 def test_lights_add_up(scene, add_light, add_camera, add_sheet, picture):
     scene.surfel_splatting.shading = "principled"
     add_camera((0, 0, 1))
