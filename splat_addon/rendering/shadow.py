@@ -293,7 +293,7 @@ def _spot(light: Light, corners: np.ndarray, seen, resolution: int) -> list[Came
     half = math.tan(min(light.spot_angle / 2, 1.5)) * FACE_WINDOW
     if half > MAX_SPOT_WINDOW:
         return _faces(light, corners, resolution, np.eye(3))
-    return _perspectives(light, corners, resolution, [light.direction], half)
+    return _perspectives(light, corners, resolution, [look_at((0, 0, 0), light.direction)], half)
 
 
 def _point(light: Light, corners: np.ndarray, seen, resolution: int) -> list[Camera]:
@@ -310,20 +310,19 @@ _CAMERAS = {"sun": _sun, "point": _point, "spot": _spot, "area": _area}
 
 
 def _faces(light: Light, corners: np.ndarray, resolution: int, axes: np.ndarray) -> list[Camera]:
-    """Six square cameras; axes: (3, 3), of which the last's back comes first and its front last."""
+    """Six square cameras; axes: (3, 3), of which the last's back comes first and its front last. The sides of their
+    pictures lie along the axes too, or there would be gaps between them."""
     x, y, z = axes
-    return _perspectives(light, corners, resolution, [-z, x, -x, y, -y, z], FACE_WINDOW)
+    looks = (-z, y), (x, z), (-x, z), (y, z), (-y, z), (z, y)
+    frames = [look_at((0, 0, 0), direction, up) for direction, up in looks]
+    return _perspectives(light, corners, resolution, frames, FACE_WINDOW)
 
 
-def _perspectives(light: Light, corners: np.ndarray, resolution: int, directions, half: float) -> list[Camera]:
+def _perspectives(light: Light, corners: np.ndarray, resolution: int, frames, half: float) -> list[Camera]:
     position = np.asarray(light.position, np.float64)
     far = float(np.linalg.norm(corners - position, axis=1).max()) * 1.01
     near = max(NEAREST * far, min(light.size / math.sqrt(3), 0.5 * far))
     window, size = (-half, half, -half, half), (resolution, resolution)
-    return [Camera(_looking(position, d), window, size, near, far) for d in directions] if far > near else []
-
-
-def _looking(position: np.ndarray, direction) -> np.ndarray:
-    frame = look_at((0, 0, 0), direction)
-    frame[:3, 3] = position
-    return frame
+    for frame in frames:
+        frame[:3, 3] = position
+    return [Camera(frame, window, size, near, far) for frame in frames] if far > near else []

@@ -65,6 +65,21 @@ def test_faces_of_a_cube_that_nobody_sees_are_not_drawn(name, render):
     assert 0 < len(few) < len(all_round)
 
 
+def test_the_maps_of_a_tilted_area_light_leave_no_gaps():
+    """They did between its front and its sides, where light came through walls."""
+    scene = balls(replace(LIGHTS["area"], position=(4, 4, 0), half_axes=((0.4, 0, 0), (0, 0.3, 0))))
+    made = plan(scene, Camera.perspective(look_at((4, 4, 40), (4, 3.9, 0)), 0.7, SIZE), SETTINGS).facts["shadow_maps"]
+    rays = np.random.default_rng(1).normal(size=(10000, 3))
+    rays = rays[rays @ LIGHTS["area"].direction > 0]
+    views = [rays @ one.camera.matrix_world[:3, :3] for one in made]
+    seen = [
+        np.abs(view[:, :2]).max(axis=1) < -view[:, 2] * one.camera.window[1]
+        for view, one in zip(views, made, strict=True)
+    ]
+    assert len(made) == 5
+    assert np.any(seen, axis=0).all()
+
+
 def test_a_light_whose_receivers_are_not_seen_has_no_map():
     scene = balls(replace(LIGHTS["sun"], receivers=(1,)))
     assert not plan(scene, CAMERAS["near"], SETTINGS).facts["shadow_maps"]
