@@ -120,3 +120,18 @@ def test_places_are_found_on_the_triangles_that_they_lie_in(seed, count):
         assert trimesh.triangles.closest_point(solid.triangles, places[i : i + 1])[0] == pytest.approx(
             places[i], abs=3e-4
         )
+
+
+def test_posts_are_not_compared_with_all_those_beside_them(monkeypatch):
+    """Places along a post met the faces of all posts in its row, which took seconds for a thousand posts."""
+    posts = [box((x, y, 0), (0.01, 0.01, 1)) for x in np.linspace(-1.9, 1.8, 16) for y in np.linspace(-1.9, 1.8, 16)]
+    looked, pairs = places_module._in_same_cells, []
+
+    def counted(*given):
+        for place, triangle in looked(*given):
+            pairs.append(len(place))
+            yield place, triangle
+
+    monkeypatch.setattr(places_module, "_in_same_cells", counted)
+    assert len(contacts_of(joined(floor(1), *posts))) == 2 * 4 * len(posts)
+    assert sum(pairs) < 1e6

@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Finds the triangles that places lie in.
-
-Both are looked up by cells of the image that sees the triangle best. In each cell, only places at the triangle's depth
-are tested, so that the leaves of a tree are not compared with all that are behind them.
-"""
+"""Finds the triangles that places lie in. Both are looked up by cells of space, along the axis that sees the triangle
+best."""
 
 from __future__ import annotations
 
@@ -13,18 +10,13 @@ import numpy as np
 
 from ..ldc.scan_conversion import batches, expand
 from ..mesh.triangle_mesh import TriangleMesh
+from .ordering import order_of
 
 #: Cells along the longest edge of the mesh.
 _CELLS = 128
 
 #: Pairs in a batch.
 _BATCH = 1 << 20
-
-#: The largest depth in a key, whose next whole number is the next cell's.
-_MOST = 0.999
-
-#: A share of the mesh's longest edge that is more than the rounding of depths, and less than counts.
-_ROUNDING = 1e-6
 
 
 def places_on_triangles(
@@ -41,8 +33,7 @@ def places_on_triangles(
     columns = np.ascontiguousarray((places - mesh.bounds()[0]).T)
     offsets = np.einsum("ij,ji->i", mesh.positions.take(mesh.triangles[:, 0], axis=0) - mesh.bounds()[0], normals)
     for axis in range(3):
-        facing_it = np.flatnonzero(facing == axis)
-        for place, triangle in _in_same_cells(mesh, facing_it, normals, offsets, places, axis, tolerance):
+        for place, triangle in _in_same_cells(mesh, np.flatnonzero(facing == axis), places, axis, tolerance):
             off = offsets.take(triangle)
             for normal, column in zip(normals, columns, strict=True):
                 off -= normal.take(triangle) * column.take(place)
@@ -55,48 +46,36 @@ def places_on_triangles(
 
 
 def _in_same_cells(
-    mesh: TriangleMesh, triangles: np.ndarray, normals, offsets, places: np.ndarray, axis: int, tolerance: float
+    mesh: TriangleMesh, triangles: np.ndarray, places: np.ndarray, axis: int, tolerance: float
 ) -> Iterator[tuple[np.ndarray, np.ndarray]]:
-    """Yields pairs of a place and one of these triangles, seen along an axis, that share a cell and about the depth.
-
-    normals, offsets: (3, T) and (T,), of the triangles' planes relative to the mesh's lowest corner.
-    """
-    across = [(axis + 1) % 3, (axis + 2) % 3]
+    """Yields pairs of a place and one of these triangles, seen along an axis, that share a cell and the depth there."""
+    along = [(axis + 1) % 3, (axis + 2) % 3, axis]  # the last one is the depth
     low, high = mesh.bounds()
-    longest = max(float((high - low).max()), 1e-300)
-    edge = longest / _CELLS
+    edge = max(float((high - low).max()) / _CELLS, 1e-300)
 
     def cells_of(values: np.ndarray) -> np.ndarray:
-        return np.clip(np.floor((values - low[across]) / edge), 0, _CELLS).astype(np.int64)
+        return np.clip(np.floor((values - low[along]) / edge), 0, _CELLS).astype(np.int64)
 
-    # Places are ordered by cell and by depth in it, which is the part of the key after the point.
-    keys = cells_of(places[:, across]) @ (_CELLS + 1, 1) + _MOST * (places[:, axis] - low[axis]) / longest
-    order = np.argsort(keys)
-    keys = keys.take(order)
-    starts = np.searchsorted(keys, np.arange((_CELLS + 1) ** 2 + 1))
-    corners = mesh.positions[:, across][mesh.triangles.take(triangles, axis=0)]
+    cells = cells_of(places[:, along]) @ ((_CELLS + 1) ** 2, _CELLS + 1, 1)
+    order = order_of(cells)
+    cells = cells.take(order)
+    starts = np.searchsorted(cells, np.arange((_CELLS + 1) ** 2 + 1) * (_CELLS + 1))
+    corners = mesh.positions[:, along][mesh.triangles.take(triangles, axis=0)]
     first, last = cells_of(corners.min(axis=1) - tolerance), cells_of(corners.max(axis=1) + tolerance)
-    some = np.flatnonzero(_places_between(starts, first, last))
-    triangles, first, size = triangles.take(some), first.take(some, axis=0), (last - first + 1).take(some, axis=0)
+    some = np.flatnonzero(_places_between(starts, first[:, :2], last[:, :2]))
+    triangles, first, last = triangles.take(some), first.take(some, axis=0), last.take(some, axis=0)
+    size = (last - first + 1)[:, :2]
     for part in batches(size.prod(axis=1), _BATCH):
         row, step = expand(size[part].prod(axis=1))
         row += part.start
-        cell = first.take(row, axis=0) + np.stack(np.divmod(step, size[:, 1].take(row)), axis=1)
-        triangle = triangles.take(row)
-        normal = normals.take(triangle, axis=1).astype(np.float64)
-        along = np.where(normal[axis] == 0, np.inf, normal[axis])
-        slopes = normal[across] / along
-        depth = offsets.take(triangle) / along - (slopes * ((cell + 0.5) * edge).T).sum(axis=0)
-        # The normal is within 55 degrees of the axis.
-        reach = np.abs(slopes).sum(axis=0) * edge / 2 + 2 * tolerance + _ROUNDING * longest
-        nearest, farthest = (_MOST * np.clip(of / longest, 0, 1) for of in (depth - reach, depth + reach))
-        number = cell @ (_CELLS + 1, 1)
-        begin = np.searchsorted(keys, number + nearest)
-        counts = np.searchsorted(keys, number + farthest, "right") - begin
+        seen = first[:, :2].take(row, axis=0) + np.stack(np.divmod(step, size[:, 1].take(row)), axis=1)
+        cell = seen @ (_CELLS + 1, 1) * (_CELLS + 1)
+        start = np.searchsorted(cells, cell + first[:, 2].take(row))
+        counts = np.searchsorted(cells, cell + last[:, 2].take(row), side="right") - start
         for few in batches(counts, _BATCH):
             pair, step = expand(counts[few])
             pair += few.start
-            yield order.take(begin.take(pair) + step), triangle.take(pair)
+            yield order.take(start.take(pair) + step), triangles.take(row.take(pair))
 
 
 def _places_between(starts: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.ndarray:
