@@ -31,6 +31,10 @@ _MAKE, _VERSION = "surfels_shape", 1
 #: A half-axis shrinks at most to this share of its original length, never to nothing.
 _LEAST_SHRINKING = 1e-3
 
+#: Triangles this much farther than the nearest count as equally near, in radii of the surfel. They are compared if the
+#: cosine between the surfel and the nearest is below the second number.
+_SAME_PLACE, _ALIKE = 0.01, 0.9
+
 #: Maximum relative difference between a source's space and that of its surfels.
 _ROUNDING = 1e-5
 
@@ -144,10 +148,8 @@ def _is_own_mesh(source: bpy.types.Object, mesh, depsgraph: bpy.types.Depsgraph)
 
 
 def _bind(mesh: bpy.types.Mesh, surfels: Surfels, vertices: np.ndarray, triangles: np.ndarray) -> None:
-    """Store the surfels relative to the nearest triangle, as attributes."""
-    tree = BVHTree.FromPolygons(vertices.tolist(), triangles.tolist(), all_triangles=True)
-    nearest = np.array([tree.find_nearest(position)[2] for position in surfels.positions.tolist()], np.int64)
-    corners = triangles[nearest]
+    """Store the surfels relative to their triangles, as attributes."""
+    corners = triangles[_triangles_of(surfels, vertices, triangles)]
     start = vertices[corners[:, 0]]
     edge_1, edge_2 = (vertices[corners[:, k]] - start for k in (1, 2))
     normal = np.cross(edge_1, edge_2)
@@ -166,6 +168,21 @@ def _bind(mesh: bpy.types.Mesh, surfels: Surfels, vertices: np.ndarray, triangle
         mesh.attributes.new(name, "FLOAT_VECTOR", "POINT").data.foreach_set("vector", np.float32(values).ravel())
     for name, values in zip(_VERTICES, corners.T, strict=True):
         mesh.attributes.new(name, "INT", "POINT").data.foreach_set("value", np.ascontiguousarray(values, np.int32))
+
+
+def _triangles_of(surfels: Surfels, vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """(n,) the triangle nearest to each surfel. Of several in one place, such as a floor and the underside of a box on
+    it, the one that faces as the surfel does.
+    """
+    tree = BVHTree.FromPolygons(vertices.tolist(), triangles.tolist(), all_triangles=True)
+    positions, facing, result = surfels.positions.tolist(), surfels.geometric_normals(), []
+    for position, normal, near in zip(positions, facing.tolist(), (_SAME_PLACE * surfels.radius).tolist(), strict=True):
+        _, own, triangle, distance = tree.find_nearest(position)
+        if own.dot(normal) < _ALIKE:
+            found = tree.find_nearest_range(position, distance + near)
+            triangle = max(found, key=lambda one: one[1].dot(normal))[2]
+        result.append(triangle)
+    return np.array(result, np.int64)
 
 
 def _new_group() -> bpy.types.NodeTree:
