@@ -42,7 +42,7 @@ _COVERED = 0.8
 #: which may leave some bare again; those that fill these are as small from the start.
 _ROUNDS = TIMES, 0
 
-#: One surfel covers about so many places in a row, and is of this share of the others' size: where these fail, the
+#: How many places in a row one surfel covers, about, and its size as a share of the others': where these fail, the
 #: surface is small.
 _PLACES, _SIZE = 2, 0.6
 
