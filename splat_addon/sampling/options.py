@@ -60,7 +60,7 @@ class SamplingOptions(Density):
         size. With a distance of 0, larger ones are only inside flat faces that look the same everywhere
         (`refine.flat_blocks`), which requires fits_blending; reductions that merge samples leave them out.
     deforms: whether the surfels will follow a deformation of the mesh; then larger ones are inside single triangles,
-        which stay flat.
+        which stay flat, and closed parts keep nothing that they touch from being seen (`refine.two_sided`).
     texture_mapped: surfels whose colour is a single image also store their texture coordinates, so that the image is
         looked up at render time.
     crease_angle: radians; splats end at clip lines (`edges.clipping`) where the surface turns by more than this (less

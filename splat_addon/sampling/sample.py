@@ -206,7 +206,8 @@ class SamplingRun:
         of_large = {edge: self.filled(large[edge], lambda share: None, edge) for edge in sorted(large)}
         cards = {}
         if self._may_have_cards:
-            cards = cards_of({1: images, **large}, {1: arrays, **of_large}, self.mesh, self.grid.spacing)
+            about = self.mesh, self.grid.spacing, self.options.deforms
+            cards = cards_of({1: images, **large}, {1: arrays, **of_large}, *about)
         gaps, gap_triangles = {}, np.empty(0, np.intp)
         if self.options.crease_angle is not None:
             arrays, gaps, gap_triangles = self._clipped(arrays, images, clipping)

@@ -101,6 +101,25 @@ def test_nothing_else_has_hidden_backs(name, cube, sphere):
     assert hidden(mesh.with_triangles(np.arange(1, len(mesh))), 60) is None
 
 
+@pytest.mark.parametrize("deforms", [False, True])
+def test_a_floor_is_no_card_if_the_box_on_it_may_move(deforms, cube):
+    """The floor would have a hole from below after the box is lifted. A card stays one."""
+    box, floor, leaf = cube(), card().with_triangles(np.arange(2)), card(apart=0.01)
+    low, high = box.bounds()
+    places = (
+        (box.positions - low) / (high - low) / 2 + (0.2, 0.2, 0),
+        floor.positions,
+        np.add(leaf.positions, (0, 0, 2)),
+    )
+    first = np.cumsum([0, len(box.positions), len(floor.positions)])
+    triangles = [one.triangles + start for one, start in zip((box, floor, leaf), first, strict=True)]
+    mesh = TriangleMesh(np.concatenate(places), np.concatenate(triangles))
+    surfels = sample_surface(mesh, resolution=60, deforms=deforms, **OPTIONS).surfels
+    height = (surfels.positions + surfels.origin)[:, 2]
+    assert (surfels.hidden_back[height > 1.9] == 1).all()
+    assert surfels.hidden_back[height < 0.6].any() != deforms
+
+
 def test_a_large_splat_finds_small_ones_behind_it():
     """The front is one large face; the back consists of strips that are too narrow for large splats."""
     steps = np.linspace(0, 1, 21)

@@ -18,6 +18,7 @@ from ..attributes.ellipses import MAX_STRETCH
 from ..edges.ordering import order_of
 from ..ldc.depth_cube import rows_of
 from ..ldc.scan_conversion import Spans, batches, expand
+from ..mesh.connectivity import part_labels, twins
 from ..mesh.triangle_mesh import TriangleMesh, doubled_areas, gather_corners
 
 #: Sheets are a card's sides if they are less than this far behind one another, in cells, and the cosine between their
@@ -35,11 +36,17 @@ _BATCH = 1 << 20
 
 
 def cards_of(
-    images: dict[int, tuple[Spans, ...]], arrays: dict[int, dict[str, np.ndarray]], mesh: TriangleMesh, spacing: float
+    images: dict[int, tuple[Spans, ...]],
+    arrays: dict[int, dict[str, np.ndarray]],
+    mesh: TriangleMesh,
+    spacing: float,
+    deforms: bool = False,
 ) -> dict[int, np.ndarray]:
     """Edge of blocks -> (n,) bool, whether each of their samples is on a card; {} if none is.
 
     images: by the edge of the blocks that samples cover, 1 for single ones. arrays: their fields of `Surfels`.
+    deforms: whether triangles will move relative to each other: then a closed part and what it touches, such as a box
+        and the floor it stands on, are no card, because they may move apart.
     """
     runs, ends = ([], [], []), [0]
     for edge, of_edge in images.items():
@@ -47,7 +54,7 @@ def cards_of(
             values = {name: arrays[edge][name][rows] for name in ("positions", "rotations")}
             runs[axis].append(_runs_of(of_edge[axis], axis, edge, values, ends[-1] + rows.start, spacing))
         ends.append(ends[-1] + len(arrays[edge]["positions"]))
-    are_cards = _have_other_sides(runs, mesh, ends[-1])
+    are_cards = _have_other_sides(runs, mesh, ends[-1], _closed_parts(mesh) if deforms else None)
     return dict(zip(images, np.split(are_cards, ends[1:-1]), strict=True)) if are_cards.any() else {}
 
 
@@ -96,10 +103,13 @@ def _runs_of(spans: Spans, axis: int, edge: int, arrays: dict[str, np.ndarray], 
     return _Runs(Spans(triangles, rows, columns, counts), depths, slopes, numbers, np.zeros(len(rows), np.int64))
 
 
-def _have_other_sides(images: list[list[_Runs]], mesh: TriangleMesh, count: int) -> np.ndarray:
+def _have_other_sides(
+    images: list[list[_Runs]], mesh: TriangleMesh, count: int, of_part: np.ndarray | None
+) -> np.ndarray:
     """(count,) bool: whether the samples with these numbers are on a card.
 
     images: for each axis, the runs of all samples. Samples that follow each other on a ray are compared.
+    of_part: (T,); only triangles with the same number may be sides of a card. None: all may.
     """
     are_cards, components = np.zeros(count, bool), np.ascontiguousarray(mesh.positions.T)
     for axis, parts in enumerate(images):
@@ -112,8 +122,22 @@ def _have_other_sides(images: list[list[_Runs]], mesh: TriangleMesh, count: int)
             below, above = (_unit(doubled_areas(of)) for of in corners)
             behind = -distances * below[axis]
             are_close = (behind > -_CROSSED) & (behind < _REACH) & ((below * above).sum(axis=0) < _OPPOSITE)
+            if of_part is not None:
+                are_close &= of_part.take(triangles[0]) == of_part.take(triangles[1])
             are_cards[numbers[:, are_close]] = True
     return are_cards
+
+
+def _closed_parts(mesh: TriangleMesh) -> np.ndarray:
+    """(T,) the number of the connected part that a triangle belongs to if that is closed, -1 otherwise."""
+    labels, count = twins(mesh.places), len(mesh.positions)
+    corners = mesh.triangles if labels is None else labels.take(mesh.triangles)
+    start, end = corners.ravel(), np.roll(corners, -1, axis=1).ravel()
+    _, edge = np.unique(np.minimum(start, end) * count + np.maximum(start, end), return_inverse=True)
+    # an edge is closed if as many triangles have it in one direction as in the other
+    is_open = np.bincount(edge, np.sign(end - start)).take(edge) != 0
+    parts = part_labels(mesh.triangles, labels).take(mesh.triangles[:, 0])
+    return np.where(np.isin(parts, parts.take(np.flatnonzero(is_open) // 3)), -1, parts)
 
 
 def _unit(vectors: np.ndarray) -> np.ndarray:
