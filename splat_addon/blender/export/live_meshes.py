@@ -288,20 +288,21 @@ class LiveMeshes:
         predicted = predict_count(mesh, spacing=spacing)
         if predicted > MAX_SURFELS:
             raise ValueError(f"It would be {predicted:,} surfels and the limit is {MAX_SURFELS:,}; sample it coarser.")
-        live.deforming = _deforming(mesh, spacing, texture_mapped, live.parts is None, not live.bends)
+        live.deforming = _deforming(mesh, spacing, texture_mapped, live.parts is None, live.bends)
         live.density, live.spacing = density, spacing
         self.counts["sampled"] += 1
         return live.deforming.at(mesh)[0]
 
 
 def _deforming(
-    mesh: TriangleMesh, spacing: float, texture_mapped: bool, ends_at_edges: bool, fits: bool
+    mesh: TriangleMesh, spacing: float, texture_mapped: bool, ends_at_edges: bool, bends: bool
 ) -> DeformingSurfels:
     """A mesh sampled as the operator does. ends_at_edges: False for a part of a mesh whose border continues as
-    polygons. fits: False for a mesh that bends, because planes that fit it now would not then.
+    polygons. bends: whether planes that fit the mesh now will not fit it later.
     """
-    edges = {"crease_angle": DEFAULT_CREASE_ANGLE, "fits_blending": True, "fits_planes": fits} if ends_at_edges else {}
-    return DeformingSurfels(mesh, spacing=spacing, texture_mapped=texture_mapped, lifts=True, **edges)
+    edges = {"crease_angle": DEFAULT_CREASE_ANGLE, "fits_blending": True, "fits_planes": not bends}
+    how = {"texture_mapped": texture_mapped, "lifts": True, "deforms": bends} | (edges if ends_at_edges else {})
+    return DeformingSurfels(mesh, spacing=spacing, **how)
 
 
 def _stretch(matrix: np.ndarray) -> float:

@@ -76,8 +76,9 @@ def test_shape_keys_bend_surfels(clips_edges, sheet, convert, bent_surfels):
     assert np.abs(bent_surfels(made).positions - flat.positions).max() < 1e-6
 
 
-def test_a_box_that_is_lifted_leaves_the_floor_it_stood_on(add_mesh, convert, bent_surfels):
-    """Surfels of the floor below it went with it, as its underside was in the same place."""
+@pytest.fixture
+def lifting(add_mesh):
+    """The shape key that lifts a box from the floor it stands on, which belongs to the same mesh."""
     x, y, z = (axis.ravel() for axis in np.meshgrid((0.3, 0.7), (0.3, 0.7), (0.0, 0.4), indexing="ij"))
     corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), *zip(x, y, z, strict=True)]
     sides = [(0, 2, 6, 4), (0, 4, 5, 1), (4, 6, 7, 5), (6, 2, 3, 7), (2, 0, 1, 3), (1, 5, 7, 3)]
@@ -87,13 +88,28 @@ def test_a_box_that_is_lifted_leaves_the_floor_it_stood_on(add_mesh, convert, be
     for point in key.data[4:]:
         point.co.z += 0.5
     key.value = 0.0
+    return key
+
+
+def test_a_box_that_is_lifted_leaves_the_floor_it_stood_on(lifting, convert, bent_surfels):
+    """Surfels of the floor below it went with it, as its underside was in the same place."""
     (made,) = convert(density="RESOLUTION", resolution=16)
     rest = bent_surfels(made)
     is_floor = (np.abs(rest.positions[:, 2]) < 1e-3) & (rest.geometric_normals()[:, 2] > 0.9)
-    key.value = 1.0
+    lifting.value = 1.0
     lifted = bent_surfels(made).positions[:, 2] - rest.positions[:, 2]
     assert is_floor.sum() > 200
     assert np.abs(lifted - np.where(is_floor, 0.0, 0.5)).max() < 1e-5
+
+
+@pytest.mark.parametrize("is_converted", [True, False])
+def test_a_floor_is_drawn_from_below_where_a_box_may_leave_it(is_converted, lifting, convert):
+    if is_converted:
+        convert(density="RESOLUTION", resolution=16, source="HIDE")
+    else:
+        bpy.context.scene.surfel_splatting.render_meshes = "SURFELS"
+    (instance,) = export_scene(bpy.context.evaluated_depsgraph_get(), SurfelStore(), LiveMeshes())[0].surfels
+    assert instance.surfels.hidden_back is None
 
 
 @pytest.mark.parametrize("is_converted", [True, False])
