@@ -82,6 +82,15 @@ def test_a_thin_shell_has_no_more_surfels_than_a_wire_may_have(cube, camera, mon
     assert prepared(cube).spacing == pytest.approx(plain, rel=0.05)
 
 
+def test_an_uneven_scale_that_multiplies_surfels_is_named(cube, camera):
+    hint = "; its scale is uneven, which multiplies surfels: apply it, or choose Space > World"
+    for scale, is_uneven in (((1, 1, 1), False), ((3, 3, 3), False), ((1, 1, 1.5), False), ((4, 0.2, 0.1), True)):
+        cube.scale = scale
+        assert prepared(cube).reason.endswith(hint) == is_uneven
+    in_world = prepared(cube, Choices({"automatic": 1.0}, space="world"))
+    assert "uneven" not in in_world.reason
+
+
 def test_the_ceiling_is_named_when_it_applies(cube, camera, monkeypatch):
     asked = prepared(cube)
     monkeypatch.setattr(automatic_density, "MOST_SURFELS", 1500)

@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable
 from typing import NamedTuple
 
 import bpy
+import numpy as np
 from mathutils import Matrix
 
 from ...sampling import NotSeenError, Outline
@@ -29,6 +30,9 @@ ACROSS_WIRES, MOST_OF_WIRES = 4, 100_000
 
 #: The most by which surfels are closer together for that. Wires too thin even then stay as they are.
 FINEST_OF_WIRES = 8
+
+#: A scale that is uneven by more than this makes many more surfels than the picture needs.
+MOST_UNEVEN = 2.0
 
 #: A moving object may come this much closer before its surfels are farther apart than requested.
 MOTION_MARGIN = 1.25
@@ -69,6 +73,8 @@ def automatic_spacing(
         spacing = without_camera(asked, surface, matrix_world, depsgraph)["spacing"]
         reason = f"{asked['pixels']:.3g} pixels where the camera is nearest"
         reason += f", {margin:g} times finer as something moves" if moves else ""
+        if _is_uneven(matrix_world):
+            reason += "; its scale is uneven, which multiplies surfels: apply it, or choose Space > World"
     except NotSeenError:
         spacing, reason = _by_resolution(longest_edge, detail, "the camera does not see it")
     except ValueError as error:
@@ -87,6 +93,12 @@ def automatic_spacing(
         reason = f"at most {MOST_SURFELS:,} surfels, {finest / spacing:.1f} times coarser than {reason}"
         spacing = finest
     return Automatic(spacing, reason)
+
+
+def _is_uneven(matrix: Matrix) -> bool:
+    """Whether a matrix lengthens one direction much more than another."""
+    longest, *_, shortest = np.linalg.svd(np.array(matrix)[:3, :3], compute_uv=False)
+    return longest > MOST_UNEVEN * shortest
 
 
 def _of_wire(wanted: float, width: float, area: float) -> float:
