@@ -2,7 +2,8 @@
 """Makes surfels follow their source's deformation by armatures, shape keys and other modifiers.
 
 Each surfel is bound to the triangle that it lies on: position, half-axes and shading normal are stored as attributes,
-relative to the triangle's edges and normal, and a Geometry Nodes modifier rebuilds them from the deformed triangle.
+relative to the triangle's edges and normal, and a Geometry Nodes modifier rebuilds them from the deformed triangle. A
+shading normal that is the mean of those at the triangle's corners stays that.
 `sampling.deform.binding` does the same for meshes that are sampled at render time. Because Blender evaluates the
 modifier, every engine sees the result, even if the source is hidden.
 """
@@ -13,6 +14,7 @@ import bpy
 import numpy as np
 from mathutils.bvhtree import BVHTree
 
+from ...sampling import TriangleMesh
 from ...surfels import Surfels
 from ..geometry.node_groups import known_group, new_modifier_group, uses_group
 from ..geometry.node_maths import Maths, enabled
@@ -23,10 +25,13 @@ from .following import follows
 from .source_record import record_of, sources_of
 
 _VERTICES = ("surfel_vertex_a", "surfel_vertex_b", "surfel_vertex_c")
+_CORNERS = ("surfel_corner_a", "surfel_corner_b", "surfel_corner_c")
 _PLACE, _ALONG_X, _ALONG_Y, _NORMAL = (f"surfel_bound_{name}" for name in ("place", "x", "y", "normal"))
+#: 1 if the shading normal is the mean of those at the corners, 0 if not, as with a normal map.
+_IS_MEAN = "surfel_bound_mean"
 
 #: Custom property of the node group.
-_MAKE, _VERSION = "surfels_shape", 1
+_MAKE, _VERSION = "surfels_shape", 2
 
 #: A half-axis shrinks at most to this share of its original length, never to nothing.
 _LEAST_SHRINKING = 1e-3
@@ -34,6 +39,9 @@ _LEAST_SHRINKING = 1e-3
 #: Triangles this much farther than the nearest count as equally near, in radii of the surfel. They are compared if the
 #: cosine between the surfel and the nearest is below the second number.
 _SAME_PLACE, _ALIKE = 0.01, 0.9
+
+#: Largest difference of a shading normal from the mean of those at the corners.
+_SAME_NORMAL = 0.02
 
 #: Maximum relative difference between a source's space and that of its surfels.
 _ROUNDING = 1e-5
@@ -58,7 +66,7 @@ def follow_shape(made: bpy.types.Object, conversion, depsgraph: bpy.types.Depsgr
     frame, own = (np.array(m, np.float64) for m in (conversion.matrix_world, source.matrix_world))
     if surfels.origin.any() or np.abs(frame - own).max() > _ROUNDING * np.abs(own).max():
         return "its surfels are even in the world, or it is sheared or far from its origin"
-    _bind(made.data, surfels, np.asarray(mesh.positions, np.float64), mesh.triangles)
+    _bind(made.data, surfels, mesh, source.evaluated_get(depsgraph).data)
     modifier = made.modifiers.new(SHAPE_GROUP, "NODES")
     modifier.node_group, modifier.show_expanded = known_group(_MAKE, _VERSION) or _new_group(), False
     made.modifiers.move(len(made.modifiers) - 1 - _pinned(made), 0)
@@ -147,9 +155,11 @@ def _is_own_mesh(source: bpy.types.Object, mesh, depsgraph: bpy.types.Depsgraph)
     return np.allclose(positions, mesh.positions, rtol=0, atol=_ROUNDING * float(np.ptp(positions, axis=0).max()))
 
 
-def _bind(mesh: bpy.types.Mesh, surfels: Surfels, vertices: np.ndarray, triangles: np.ndarray) -> None:
-    """Store the surfels relative to their triangles, as attributes."""
-    corners = triangles[_triangles_of(surfels, vertices, triangles)]
+def _bind(made: bpy.types.Mesh, surfels: Surfels, mesh: TriangleMesh, source: bpy.types.Mesh) -> None:
+    """Store the surfels relative to their triangles, as attributes. mesh: of the evaluated source."""
+    vertices = np.asarray(mesh.positions, np.float64)
+    triangles = _triangles_of(surfels, vertices, mesh.triangles)
+    corners = mesh.triangles[triangles]
     start = vertices[corners[:, 0]]
     edge_1, edge_2 = (vertices[corners[:, k]] - start for k in (1, 2))
     normal = np.cross(edge_1, edge_2)
@@ -165,9 +175,34 @@ def _bind(mesh: bpy.types.Mesh, surfels: Surfels, vertices: np.ndarray, triangle
         _NORMAL: np.stack([(normals * side).sum(axis=1) for side in (edge_1, edge_2, normal)], axis=1),
     }
     for name, values in columns.items():
-        mesh.attributes.new(name, "FLOAT_VECTOR", "POINT").data.foreach_set("vector", np.float32(values).ravel())
-    for name, values in zip(_VERTICES, corners.T, strict=True):
-        mesh.attributes.new(name, "INT", "POINT").data.foreach_set("value", np.ascontiguousarray(values, np.int32))
+        made.attributes.new(name, "FLOAT_VECTOR", "POINT").data.foreach_set("vector", np.float32(values).ravel())
+    loops, is_mean = _corners_of(mesh, triangles, source), np.zeros(len(surfels), np.float32)
+    if mesh.corner_normals is not None:
+        along_1, along_2, _ = columns[_PLACE].T
+        shares = np.stack([1 - along_1 - along_2, along_1, along_2], axis=1)
+        mean = np.einsum("nk,nkc->nc", shares, mesh.corner_normals[triangles].astype(np.float64))
+        mean /= np.maximum(np.linalg.norm(mean, axis=1, keepdims=True), 1e-30)
+        is_mean[(np.linalg.norm(mean - normals, axis=1) < _SAME_NORMAL) & (loops >= 0).all(axis=1)] = 1
+    made.attributes.new(_IS_MEAN, "FLOAT", "POINT").data.foreach_set("value", is_mean)
+    for names, numbers in ((_VERTICES, corners), (_CORNERS, np.maximum(loops, 0))):
+        for name, values in zip(names, numbers.T, strict=True):
+            made.attributes.new(name, "INT", "POINT").data.foreach_set("value", np.ascontiguousarray(values, np.int32))
+
+
+def _corners_of(mesh: TriangleMesh, triangles: np.ndarray, source: bpy.types.Mesh) -> np.ndarray:
+    """(n, 3) the corners of the source's faces that are those of (n,) triangles; -1 where they are not found."""
+    source.calc_loop_triangles()
+    found, count = source.loop_triangles, len(source.loop_triangles)
+    own, loops = (read_values(found, name, 3, count, np.int32).astype(np.int64) for name in ("vertices", "loops"))
+    size = np.int64(len(mesh.positions))
+
+    def keys(of: np.ndarray) -> np.ndarray:
+        return (of[:, 0] * size + of[:, 1]) * size + of[:, 2]
+
+    order = np.argsort(keys(own))
+    ordered, wanted = keys(own)[order], keys(mesh.triangles[triangles].astype(np.int64))
+    at = np.minimum(np.searchsorted(ordered, wanted), count - 1)
+    return np.where((ordered[at] == wanted)[:, None], loops[order[at]], -1)
 
 
 def _triangles_of(surfels: Surfels, vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
@@ -209,7 +244,16 @@ def _new_group() -> bpy.types.NodeTree:
         m.vector("SCALE", m.vector("CROSS_PRODUCT", normal, edge_1), scale=m.number("DIVIDE", 1.0, area)),
         normal,
     )
-    shading = m.vector("NORMALIZE", m.combined(dual, m.attribute(_NORMAL, "FLOAT_VECTOR")))
+    bound = m.vector("NORMALIZE", m.combined(dual, m.attribute(_NORMAL, "FLOAT_VECTOR")))
+    first, *others = (m.sampled_normal(shape, m.attribute(name, "INT")) for name in _CORNERS)
+    shares = m.separated(m.attribute(_PLACE, "FLOAT_VECTOR"))
+    mean = first
+    for other, share in zip(others, shares, strict=False):
+        mean = m.vector("ADD", mean, m.vector("SCALE", m.vector("SUBTRACT", other, first), scale=share))
+    is_mean = m.attribute(_IS_MEAN, "FLOAT")
+    mean = m.vector("SCALE", m.vector("NORMALIZE", mean), scale=is_mean)
+    rest = m.vector("SCALE", bound, scale=m.number("SUBTRACT", 1.0, is_mean))
+    shading = m.vector("ADD", mean, rest)
 
     # u and v are conjugate half-diameters of the new ellipse; rotated by t they become its half-axes. Textures and clip
     # lines refer to the axes: surfels that have them are not rotated, and if sheared they are as long as u and v

@@ -27,10 +27,17 @@ class Maths:
 
     def sampled(self, geometry: Socket, index: Socket) -> Socket:
         """The position of a vertex."""
-        node, position = self._new("GeometryNodeSampleIndex"), self._new("GeometryNodeInputPosition")
-        node.data_type, node.domain = "FLOAT_VECTOR", "POINT"
+        return self._sampled(geometry, index, "POINT", "GeometryNodeInputPosition")
+
+    def sampled_normal(self, geometry: Socket, index: Socket) -> Socket:
+        """The shading normal of a face's corner."""
+        return self._sampled(geometry, index, "CORNER", "GeometryNodeInputNormal")
+
+    def _sampled(self, geometry: Socket, index: Socket, domain: str, field: str) -> Socket:
+        node, value = self._new("GeometryNodeSampleIndex"), self._new(field)
+        node.data_type, node.domain = "FLOAT_VECTOR", domain
         self._link(geometry, node.inputs["Geometry"])
-        self._link(position.outputs[0], enabled(node.inputs, "Value"))
+        self._link(value.outputs[0], enabled(node.inputs, "Value"))
         self._link(index, node.inputs["Index"])
         return enabled(node.outputs, "Value")
 

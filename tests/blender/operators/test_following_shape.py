@@ -91,6 +91,27 @@ def lifting(add_mesh):
     return key
 
 
+@pytest.mark.parametrize("is_smooth", [True, False])
+def test_a_sheet_that_is_rolled_up_is_shaded_as_its_source(is_smooth, sheet, convert, bent_surfels):
+    """Flat when it was converted, it had the same shading normal all over a face once it was rolled up."""
+    for face in sheet.data.polygons:
+        face.use_smooth = is_smooth
+    sheet.shape_key_add(name="Basis")
+    key = sheet.shape_key_add(name="Rolled")
+    for point in key.data:
+        x, y, _ = point.co
+        point.co = (np.sin(x), y, np.cos(x))
+    key.value = 0.0
+    (made,) = convert(density="RESOLUTION", resolution=32)
+    rest = bent_surfels(made)
+    key.value = 1.0
+    x = rest.positions[:, 0]
+    off = np.linalg.norm(bent_surfels(made).normals - np.stack([np.sin(x), 0 * x, np.cos(x)], axis=1), axis=1)
+    # the faces at the ends have no neighbours to be smooth with
+    assert (off[(x > 0.2) & (x < 0.8)].max() < 0.005) == is_smooth
+    assert np.abs(rest.normals - (0, 0, 1)).max() < 1e-5
+
+
 def test_a_box_that_is_lifted_leaves_the_floor_it_stood_on(lifting, convert, bent_surfels):
     """Surfels of the floor below it went with it, as its underside was in the same place."""
     (made,) = convert(density="RESOLUTION", resolution=16)
