@@ -371,8 +371,8 @@ def test_a_plate_as_thin_as_rounding_ends_at_its_outline(share):
     assert beyond[np.abs(surfels.geometric_normals()[row, 2]) > 0.9].max() < 0.02 * spacing
 
 
-def test_many_faces_on_one_edge_end_there_in_moderate_time():
-    """These are the leaves of a book. Each surfel was compared with all of them, so that 2,000 took 12 GB."""
+def test_many_faces_on_one_edge_are_compared_with_few_of_its_sides():
+    """These are the leaves of a book. Each surfel was compared with all of them, which took over 12 GB for 2,000."""
     angles = np.linspace(0.1, 3, 120)
     corners = np.array([(0, 0, 0), (0, 0, 1), *((np.cos(a), np.sin(a), z) for a in angles for z in (0, 1))])
     leaves = [t for k in range(120) for t in ((0, 2 + 2 * k, 3 + 2 * k), (0, 3 + 2 * k, 1))]

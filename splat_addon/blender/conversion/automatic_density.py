@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable
+from functools import cache
 from typing import NamedTuple
 
 import bpy
@@ -66,6 +67,7 @@ def automatic_spacing(
     """
     if not (area > 0 and longest_edge > 0 and pixels > 0):
         return Automatic(0.0, "")
+    surface = cache(surface)
     moves = any(map(is_moving, (*sources, depsgraph.scene.camera)))
     margin = MOTION_MARGIN if moves else 1.0
     try:

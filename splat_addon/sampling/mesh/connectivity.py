@@ -68,6 +68,11 @@ def part_labels(corners: np.ndarray, labels: np.ndarray | None = None) -> np.nda
     return labels
 
 
+def triangle_parts(triangles: np.ndarray, labels: np.ndarray | None) -> np.ndarray:
+    """(T,) the part of each of (T, 3) triangles, as its lowest vertex. labels: from `twins`."""
+    return part_labels(triangles, labels).take(triangles[:, 0])
+
+
 def _shortened(labels: np.ndarray) -> np.ndarray:
     """For every vertex the root of its path."""
     while True:

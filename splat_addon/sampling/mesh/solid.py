@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .connectivity import part_labels, twins
+from .connectivity import triangle_parts, twins
 from .survey import signed_volumes, survey
 from .triangle_mesh import TriangleMesh
 
@@ -33,7 +33,7 @@ class SolidShape:
         if self._is_closed:
             #: For each vertex the first one at its position; None: no position is shared.
             self._twins = twins(mesh.places)
-            self._parts = part_labels(mesh.triangles, self._twins).take(mesh.triangles[:, 0])
+            self._parts = triangle_parts(mesh.triangles, self._twins)
 
     def is_solid_at(self, positions: np.ndarray) -> bool:
         """Whether the mesh is solid with these (V, 3) positions of the same vertices. False also if vertices that

@@ -52,7 +52,7 @@ class _Runs(NamedTuple):
     first: np.ndarray
     stop: np.ndarray
 
-    def those(self, some: np.ndarray) -> _Runs:
+    def take(self, some: np.ndarray) -> _Runs:
         return _Runs(*(values[some] for values in self))
 
 
@@ -123,7 +123,7 @@ class _Cells:
 
 def _blocks(runs: _Runs, edge: int, ring: int) -> _Runs:
     """Runs of blocks all of whose cells, and those of the ring, are in one face; rows and columns in blocks."""
-    runs = runs.those(runs.stop - runs.first >= edge + 2 * ring)
+    runs = runs.take(runs.stop - runs.first >= edge + 2 * ring)
     first, stop = -(-(runs.first + ring) // edge), (runs.stop - ring) // edge
     # The rows of blocks that each row is in or beside.
     lowest, highest = -(-(runs.rows - ring - edge + 1) // edge), (runs.rows + ring) // edge

@@ -18,7 +18,7 @@ from ..attributes.ellipses import MAX_STRETCH
 from ..edges.ordering import order_of
 from ..ldc.depth_cube import rows_of
 from ..ldc.scan_conversion import Spans, batches, expand
-from ..mesh.connectivity import part_labels, twins
+from ..mesh.connectivity import triangle_parts, twins
 from ..mesh.triangle_mesh import TriangleMesh, doubled_areas, gather_corners
 
 #: Sheets are a card's sides if they are less than this far behind one another, in cells, and the cosine between their
@@ -136,7 +136,7 @@ def _closed_parts(mesh: TriangleMesh) -> np.ndarray:
     _, edge = np.unique(np.minimum(start, end) * count + np.maximum(start, end), return_inverse=True)
     # an edge is closed if as many triangles have it in one direction as in the other
     is_open = np.bincount(edge, np.sign(end - start)).take(edge) != 0
-    parts = part_labels(mesh.triangles, labels).take(mesh.triangles[:, 0])
+    parts = triangle_parts(mesh.triangles, labels)
     return np.where(np.isin(parts, parts.take(np.flatnonzero(is_open) // 3)), -1, parts)
 
 
