@@ -145,6 +145,7 @@ void clip_lines_bound(inout Candidate c) {
 const float TO_WITHIN = 0.75;  // pixels past the line, up to which a sample's area is at most partly beyond it
 const float TO_LINE = 0.25;    // pixels by which the distance to the line may be wrong
 const float TO_NARROW = 0.1;   // the same for what is narrower than a pixel, where both lines are near
+const float BENT = 3.0;        // times as steep may one surface be on one side of a line as on the other
 
 // Distance in pixels past the nearest line to a kept point, at most 0 for kept points. way: the unit vector back.
 float past_line(vec2 from, out vec2 way) {
@@ -167,17 +168,24 @@ float growth_of(vec2 from, float gap, Plane plane, vec2 way) {
 // the crease. There the splat counts as much as it is visible before the line. The adjacent face meets the splat's
 // plane at the line, so the gap between both grows from there to the next pixel. A visible surface that is nearer by a
 // larger gap is another one, and hides the splat. If the splat is so narrow that the sample before the line is past
-// another line, the same must hold there. The twin: seen_past_lines in reference/clipped_kernels.py.
+// another line, the same must hold there. Shortly before the line, the gap is too small to tell. If another surface is
+// nearer farther before the line, and farther beyond it, a wall goes through: the splat's face ends at its back and is
+// not seen. The twin: seen_near_lines in reference/clipped_kernels.py.
 void blurs_lines_bound(inout Candidate c) {
   vec2 way, other_way;
   float past = past_line(gl_FragCoord.xy, way), nearer = c.depth - c.seen.z;
   float growth = growth_of(gl_FragCoord.xy, -nearer, c.plane, way);
-  if (c.in_space || past <= 0.0) return;
+  if (c.in_space || past <= -TO_LINE) return;
   vec2 before_line = gl_FragCoord.xy + (TO_WITHIN + past) * way;
   ivec2 at = clamp(ivec2(floor(before_line)), ivec2(0), textureSize(depth_bounds, 0) - 1);
   vec2 before = vec2(at) + 0.5;
   float nearer_before = plane_depth(c.plane, place_at(c.plane, before)) - texelFetch(depth_bounds, at, 0).z;
   float past_other = past_line(before, other_way), most_before = 0.0;
+  if (past <= 0.0) {
+    float farther_beyond = -growth * past_other;
+    if (nearer_before > 0.0 && nearer_before < BENT * farther_beyond && farther_beyond < BENT * nearer_before) discard;
+    return;
+  }
   bool is_narrow = past_other > 0.0;
   if (is_narrow) most_before = -growth_of(before, -nearer_before, c.plane, other_way) * (past_other + TO_NARROW);
   if (nearer_before > max(most_before, 0.0)) discard;

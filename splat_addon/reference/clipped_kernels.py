@@ -20,20 +20,25 @@ TO_WITHIN = 0.75
 #: Pixels by which the distance to a line may be wrong; and where a splat is narrower than a pixel.
 TO_LINE, TO_NARROW = 0.25, 0.1
 
+#: How many times as steep one surface may be on one side of a line as on the other.
+BENT = 3.0
+
 #: Pixels, as a length at the splat, by which a face beyond a concave crease may be nearer than the radius allows.
 NEARER_PIXELS = 4.0
 
 
-def kernel_ends(splats: Splats, grid: RayGrid, ray: np.ndarray, splat: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(M,) share of each kernel that its lines keep, and (M, 2) the way in pixels from rays that have passed a line to
-    where they have not; (0, 0) for the others.
+def kernel_ends(
+    splats: Splats, grid: RayGrid, ray: np.ndarray, splat: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(M,) share of each kernel that its lines keep, (M,) how far in pixels rays have passed the nearest line, -inf if
+    there is none, and (M, 2) the unit vector from it to where splats are kept.
 
     ray, splat: (M,) numbers.
     """
-    share, back = np.ones(len(ray)), np.zeros((len(ray), 2))
+    share, past, way = np.ones(len(ray)), np.full(len(ray), -np.inf), np.zeros((len(ray), 2))
     rows = np.flatnonzero((splats.clip[splat, :, 2] < 1).any(axis=1))
     if not len(rows):
-        return share, back
+        return share, past, way
     of, lines, reflex = splat[rows], there(splats.clip[splat[rows]]), splats.reflex[splat[rows]]
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         place, change = _places(splats, grid, ray[rows], of)
@@ -43,54 +48,57 @@ def kernel_ends(splats: Splats, grid: RayGrid, ray: np.ndarray, splat: np.ndarra
         inside = (np.einsum("nli,ni->nl", lines[..., :2], place) + lines[..., 2]) / length
         first = np.where(reflex, inside[:, 0] > inside[:, 1], inside[:, 0] < inside[:, 1])
         one = np.arange(len(rows)), np.where(first, 0, 1)
-        way = (TO_WITHIN - inside[one])[:, None] * gradient[one] / length[one][:, None]
-    ended = np.flatnonzero((inside[one] < 0) & np.isfinite(way).all(axis=1))
-    back[rows[ended]] = way[ended]
-    return share, back
+        direction = gradient[one] / length[one][:, None]
+    told = np.flatnonzero(np.isfinite(inside[one]) & np.isfinite(direction).all(axis=1))
+    past[rows[told]], way[rows[told]] = -inside[one][told], direction[told]
+    return share, past, way
 
 
-def seen_past_lines(
-    splats: Splats, grid: RayGrid, ray: np.ndarray, splat: np.ndarray, back: np.ndarray,
+def seen_near_lines(
+    splats: Splats, grid: RayGrid, ray: np.ndarray, splat: np.ndarray, past: np.ndarray, way: np.ndarray,
     visibility: np.ndarray, depth_on: Callable[[np.ndarray, np.ndarray], np.ndarray], epsilon: float,
 ) -> np.ndarray:  # fmt: skip
-    """(M,) bool: whether splats are seen on rays that have passed one of their lines.
+    """(M,) bool: whether one of their lines lets splats be seen on rays that have passed it, or are within TO_LINE.
 
-    They are if they are seen before the line and only the face beyond it hides them, which meets their plane there. If
-    the ray before the line is past another one, because the splat is narrow, the same must hold there.
-    ray, splat: (M,) numbers. back: (M, 2) of `kernel_ends`, none (0, 0). visibility: (count,) depth up to which each
-    ray sees. depth_on(splat, ray): (M,) depths of planes on rays, held near the splats. epsilon: in radii.
+    Past it, they are seen if they are seen before the line and only the face beyond it hides them, which meets their
+    plane there. If the ray before the line is past another one, because the splat is narrow, the same must hold there.
+    Before it, they are seen unless a wall goes through that their face ends at the back of.
+    ray, splat: (M,) numbers. past, way: of `kernel_ends`. visibility: (count,) depth up to which each ray sees.
+    depth_on(splat, ray): (M,) depths of planes on rays, held near the splats. epsilon: in radii.
     """
-    before = grid.numbers(*np.floor(grid.columns_rows(ray) + 0.5 + back.T))
+    before = grid.numbers(*np.floor(grid.columns_rows(ray) + 0.5 + ((TO_WITHIN + past)[:, None] * way).T))
     nearer_before = depth_on(splat, before) - visibility[before]
-    other_back = kernel_ends(splats, grid, before, splat)[1]
-    is_narrow, most_before = other_back.any(axis=1), np.zeros(len(ray))
-    some = np.flatnonzero(is_narrow)
-    of = before[some], splat[some], other_back[some], visibility, nearer_before[some], TO_NARROW
+    _, past_other, other_way = kernel_ends(splats, grid, before, splat)
     nearer, apart = depth_on(splat, ray) - visibility[ray], (1 + 4 * epsilon) * splats.radius()[splat]
     depth = np.ones(len(splat)) if grid.camera.is_orthographic else -splats.center[splat, 2]
+    is_narrow, most_before = past_other > 0, np.zeros(len(ray))
+    some = np.flatnonzero(is_narrow)
+    of = before[some], splat[some], other_way[some], visibility, nearer_before[some]
     with np.errstate(divide="ignore", invalid="ignore"):
-        most_before[some] = _growth(splats, grid, *of)
-        slack = np.where(is_narrow, TO_NARROW, TO_LINE)
+        most_before[some] = _growth(splats, grid, *of) * (past_other[some] + TO_NARROW)
+        growth = _growth(splats, grid, ray, splat, way, visibility, nearer)
         most = np.minimum(
-            apart + NEARER_PIXELS * depth * grid.steps()[0],
-            _growth(splats, grid, ray, splat, back, visibility, nearer, slack),
+            apart + NEARER_PIXELS * depth * grid.steps()[0], growth * (past + np.where(is_narrow, TO_NARROW, TO_LINE))
         )
-    is_seen = nearer_before <= np.maximum(most_before, 0)
-    return is_seen & (nearer <= np.maximum(np.where(is_narrow, 0, apart), most))
+        farther = growth * past_other
+        is_through = (nearer_before > 0) & (nearer_before < BENT * farther) & (farther < BENT * nearer_before)
+    is_seen = (nearer_before <= np.maximum(most_before, 0)) & (
+        nearer <= np.maximum(np.where(is_narrow, 0, apart), most)
+    )
+    return np.where(past > 0, is_seen, (nearer <= 0) & ~is_through)
 
 
-def _growth(splats: Splats, grid: RayGrid, ray, splat, back: np.ndarray, visibility, nearer, slack) -> np.ndarray:
-    """(M,) by how much the visible surface may have come nearer than the plane since the line, if from there on it
-    comes nearer as it does from the ray to the next; -inf if that ray sees nothing.
+def _growth(splats: Splats, grid: RayGrid, ray, splat, way: np.ndarray, visibility, nearer) -> np.ndarray:
+    """(M,) by how much per pixel the visible surface comes nearer than the plane, from the ray to the next away from
+    the line; -inf if that ray sees nothing.
 
-    nearer: (M,) by how much it is nearer on the ray. slack: pixels by which the distance to the line may be wrong.
+    nearer: (M,) by how much it is nearer on the ray.
     """
-    length = np.linalg.norm(back, axis=1)
-    way, at = back / length[:, None], grid.columns_rows(ray)
+    at = grid.columns_rows(ray)
     beyond = np.floor(at + 0.5 - way.T)
     origin, direction = grid.through(*beyond)
     further = _depth(splats, splat, origin, direction) - visibility[grid.numbers(*beyond)]
-    return (further - nearer) / np.einsum("in,ni->n", at - beyond, way) * (length - TO_WITHIN + slack)
+    return (further - nearer) / np.einsum("in,ni->n", at - beyond, way)
 
 
 def _places(splats: Splats, grid: RayGrid, ray: np.ndarray, splat: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

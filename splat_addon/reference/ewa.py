@@ -17,7 +17,7 @@ from ..rendering.frame import EMPTY_DEPTH, Frame
 from ..rendering.scene import Scene
 from ..rendering.scene.camera import Camera
 from ..rendering.settings import Settings
-from .clipped_kernels import kernel_ends, seen_past_lines
+from .clipped_kernels import TO_LINE, kernel_ends, seen_near_lines
 from .exact import DEFAULTS, shaded_rays
 from .filters import SIGMA
 from .rays import RayGrid, average, candidates, splats_in, visible_depth
@@ -139,10 +139,11 @@ def _contributions(
         reached = np.flatnonzero(square <= cutoff**2)
         ray, splat, square = ray[reached], splat[reached], square[reached]
         depth = depth_on(splat, ray)
-        share, back = kernel_ends(splats, grid, ray, splat)
+        share, past, way = kernel_ends(splats, grid, ray, splat)
         seen = depth <= visibility[ray]
-        past = np.flatnonzero(back.any(axis=1))
-        seen[past] = seen_past_lines(splats, grid, ray[past], splat[past], back[past], visibility, depth_on, epsilon)
+        near = np.flatnonzero(past > -TO_LINE)
+        of = ray[near], splat[near], past[near], way[near]
+        seen[near] = seen_near_lines(splats, grid, *of, visibility, depth_on, epsilon)
         seen &= (depth >= grid.camera.near) & (depth <= grid.camera.far) & (share > 0)
         ray, splat = ray[seen], splat[seen]
         weight = projections.amplitude[splat] * np.exp(-square[seen] / 2) * share[seen]

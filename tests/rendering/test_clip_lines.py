@@ -125,6 +125,36 @@ def test_past_its_line_a_splat_does_not_show_that_is_hidden_before_it(method, pi
     assert np.count_nonzero(frame.color[..., 1] > 0.2) <= most
 
 
+def partitioned_wall(angle):
+    """A red wall of two faces, and a green partition behind it that ends at the edge between them.
+
+    angle: degrees between the partition and the wall's plane.
+    """
+    edge = np.array([(0.3, -1, 0), (-0.3, 1, 0)])
+    aside, away = np.array([1, 0, 0]), (np.cos(np.radians(angle)), 0, -np.sin(np.radians(angle)))
+    corners = np.concatenate([edge, edge + aside, edge - aside, edge + away])
+    triangles = np.array([(0, 2, 3), (0, 3, 1), (4, 0, 1), (4, 1, 5), (0, 6, 7), (0, 7, 1)])
+    colors = np.ones((6, 3, 4), np.float32)
+    colors[:4, :, 1:3], colors[4:, :, (0, 2)] = 0, 0
+    surface = Surface(Channel((1, 1, 1, 1), VertexColors()))
+    return TriangleMesh(corners, triangles, corner_colors=colors, surfaces=(surface,))
+
+
+@pytest.mark.parametrize("method", ["mip", "ewa"])
+@pytest.mark.parametrize("angle", [17, 30, 40])
+def test_a_wall_does_not_show_the_partition_that_ends_at_its_back(method, angle, render):
+    """A line of green dots showed in front of the partition, 0.15 to 0.39 as bright as it."""
+    surfels = sample_mesh(partitioned_wall(angle), spacing=0.02, crease_angle=DEFAULT_CREASE_ANGLE, fits_blending=True)
+    camera = Camera.perspective(look_at((0.4, 0.5, 5.0), (0, 0, 0)), 0.4, (160, 160), 0.1, 100)
+    scene, settings, wall = Scene((surfels,)), replace(FLAT, method=method, supersampling=1), np.s_[40:120, 40:120]
+    frame = render(scene, camera, settings)
+    assert frame.coverage[wall].min() > 0.98
+    assert frame.color[wall][..., 1].max() < 0.1
+    if method == "ewa":
+        apart = np.abs(frame.color - render_ewa(scene, camera, settings).color)[wall].max(axis=2)
+        assert np.count_nonzero(apart > 0.01) <= 3
+
+
 @pytest.mark.parametrize(("method", "truth"), [("quad", render_exact), ("ewa", render_ewa)])
 @pytest.mark.parametrize("is_solid", [True, False])
 def test_the_picture_is_that_of_float64(is_solid, method, truth, render):
