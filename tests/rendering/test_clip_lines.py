@@ -143,7 +143,7 @@ def partitioned_wall(angle):
 @pytest.mark.parametrize("method", ["mip", "ewa"])
 @pytest.mark.parametrize("angle", [17, 30, 40])
 def test_a_wall_does_not_show_the_partition_that_ends_at_its_back(method, angle, render):
-    """A line of green dots showed in front of the partition, 0.15 to 0.39 as bright as it."""
+    """A line of green dots was seen on the wall, as bright as 0.15 to 0.39 of the partition."""
     surfels = sample_mesh(partitioned_wall(angle), spacing=0.02, crease_angle=DEFAULT_CREASE_ANGLE, fits_blending=True)
     camera = Camera.perspective(look_at((0.4, 0.5, 5.0), (0, 0, 0)), 0.4, (160, 160), 0.1, 100)
     scene, settings, wall = Scene((surfels,)), replace(FLAT, method=method, supersampling=1), np.s_[40:120, 40:120]

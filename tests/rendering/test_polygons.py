@@ -77,6 +77,24 @@ def opened(mask):
     return inner
 
 
+@pytest.mark.parametrize("method", ["mip", "raycast"])
+@pytest.mark.parametrize("is_parallel", [False, True])
+@pytest.mark.parametrize("from_below", [False, True])
+def test_of_a_cards_two_sides_the_one_that_faces_the_viewer_is_seen(from_below, is_parallel, method, render):
+    """From both sides the one that was drawn first was seen. The method "raycast" writes depth."""
+    red, blue = np.float32(((1, 0, 0, 1), (0, 0, 1, 1)))
+    triangles = np.concatenate([HALVES, HALVES[:, ::-1]])
+    sides = make_polygons(SQUARE, triangles, colors=np.repeat([red, blue], 6, axis=0))
+    place = look_at((0.7, -1.4, -2.9 if from_below else 2.9), (0, 0, 0))
+    made, wide = (Camera.orthographic, 3.0) if is_parallel else (Camera.perspective, 0.9)
+    frame = render(
+        Scene(polygons=(PolygonInstance(sides),)), made(place, wide, SIZE), Settings(shading="flat", method=method)
+    )
+    seen = frame.color[frame.coverage > 0.99, :3]
+    assert len(seen) > 1000
+    assert np.abs(seen - (blue if from_below else red)[:3]).max() < 0.01
+
+
 @pytest.mark.parametrize("camera", ["perspective", "parallel", "far"])
 def test_attributes_are_the_exact_ones(camera, render):
     """The corners have roughness, metallic and emission; the object is mirrored and sheared, and seen from near and

@@ -5,8 +5,9 @@ The reference is rendered from the mesh's triangles in float64 with 8 x 8 sample
 sigma 0.7071 pixels; it shares no code with surfels. Meshes are coloured by their normals, split at creases over 30
 degrees, unlit, on a grey background of 0.05, and seen from three directions at 1.4 diagonals of their boxes. "engine":
 surfels as the operator makes them, drawn by the device; "whole": the same without clip lines, blend depths and fitted
-planes. The others are exact pictures (--exact): "now" of whole splats; "clip" with clip lines; "blend" with a blend
-depth per surfel; "both"; "fit" in fitted planes, too; "flat" with large surfels inside flat faces, as "engine" has.
+planes; "polygons": the mesh itself, drawn by the engine without surfels. The others are exact pictures (--exact): "now"
+of whole splats; "clip" with clip lines; "blend" with a blend depth per surfel; "both"; "fit" in fitted planes, too;
+"flat" with large surfels inside flat faces, as "engine" has.
 PSNR is measured in sRGB. A pixel is wrong if a component differs by more than 0.15; bare if the mesh covers it fully
 and the surfels less than 0.98; spilled if the surfels cover more than 0.02 of it and the mesh nothing. Conversion:
 median ratios of its time to that without edges, by the processor's and by the clock. Frame: median ratio of the
@@ -25,7 +26,7 @@ from measuring.models import short
 from measuring.timing import Spread, both, in_turn, processor
 from splat_addon.reference import render_exact
 from splat_addon.reference.triangles import render_triangles
-from splat_addon.rendering import Renderer, Scene, Settings, open_device
+from splat_addon.rendering import PolygonInstance, Renderer, Scene, Settings, make_polygons, open_device
 from splat_addon.sampling import DEFAULT_CREASE_ANGLE, Tolerance, camera_spacing, is_solid, outline, sample_surface
 
 DEVICES = ("standalone",)
@@ -101,8 +102,9 @@ def rows(meshes, renderer, options, report):
         for resolution, density in densities(mesh, cameras, options).items():
             drawn = {"engine": "flat", "whole": "now"}
             scenes = {shown: Scene((converted(mesh, density, kind),)) for shown, kind in drawn.items()}
+            scenes["polygons"] = Scene(polygons=(PolygonInstance(polygons(mesh)),))
             settings = replace(SETTINGS, samples=options.samples, detail_tolerance=options.tolerance)
-            draw = dict.fromkeys(drawn, partial(renderer.render, settings=settings))
+            draw = dict.fromkeys(scenes, partial(renderer.render, settings=settings))
             for kind in options.kind if options.exact else ():
                 scenes[kind] = Scene((converted(mesh, density, kind),))
                 how = {"settings": SETTINGS, "samples": options.exact, "pixel_filter": "gaussian"}
@@ -119,6 +121,11 @@ def rows(meshes, renderer, options, report):
                         short(name), resolution, k, kind, f"{found.psnr:.1f}", f"{found.flip:.4f}",
                         f"{found.flip_99:.3f}", found.blob, found.wrong, found.bare, found.spilled,
                     )  # fmt: skip
+
+
+def polygons(mesh):
+    colors = mesh.corner_colors.reshape(-1, 4)
+    return make_polygons(mesh.positions, mesh.triangles, mesh.corner_normals, colors=colors)
 
 
 def conversions(meshes, options):
