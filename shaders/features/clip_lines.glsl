@@ -145,7 +145,7 @@ void clip_lines_bound(inout Candidate c) {
 const float TO_WITHIN = 0.75;  // pixels past the line, up to which a sample's area is at most partly beyond it
 const float TO_LINE = 0.25;    // pixels by which the distance to the line may be wrong
 const float TO_NARROW = 0.1;   // the same for what is narrower than a pixel, where both lines are near
-const float BENT = 3.0;        // times as steep may one surface be on one side of a line as on the other
+const float STEEPER = 3.0;     // times as steep may a surface be on one side of a line as on the other
 
 // Distance in pixels past the nearest line to a kept point, at most 0 for kept points. way: the unit vector back.
 float past_line(vec2 from, out vec2 way) {
@@ -183,7 +183,8 @@ void blurs_lines_bound(inout Candidate c) {
   float past_other = past_line(before, other_way), most_before = 0.0;
   if (past <= 0.0) {
     float farther_beyond = -growth * past_other;
-    if (nearer_before > 0.0 && nearer_before < BENT * farther_beyond && farther_beyond < BENT * nearer_before) discard;
+    bool goes_through = nearer_before < STEEPER * farther_beyond && farther_beyond < STEEPER * nearer_before;
+    if (nearer_before > 0.0 && goes_through) discard;
     return;
   }
   bool is_narrow = past_other > 0.0;

@@ -21,7 +21,7 @@ TO_WITHIN = 0.75
 TO_LINE, TO_NARROW = 0.25, 0.1
 
 #: How many times as steep one surface may be on one side of a line as on the other.
-BENT = 3.0
+STEEPER = 3.0
 
 #: Pixels, as a length at the splat, by which a face beyond a concave crease may be nearer than the radius allows.
 NEARER_PIXELS = 4.0
@@ -81,7 +81,7 @@ def seen_near_lines(
             apart + NEARER_PIXELS * depth * grid.steps()[0], growth * (past + np.where(is_narrow, TO_NARROW, TO_LINE))
         )
         farther = growth * past_other
-        is_through = (nearer_before > 0) & (nearer_before < BENT * farther) & (farther < BENT * nearer_before)
+        is_through = (nearer_before > 0) & (nearer_before < STEEPER * farther) & (farther < STEEPER * nearer_before)
     is_seen = (nearer_before <= np.maximum(most_before, 0)) & (
         nearer <= np.maximum(np.where(is_narrow, 0, apart), most)
     )
