@@ -5,6 +5,8 @@ import bpy
 import numpy as np
 import pytest
 
+from splat_addon.blender.materials.shader_mixes import emitted
+
 RED, BLUE = (0.8, 0.1, 0.1, 1), (0.1, 0.2, 0.9, 1)
 
 
@@ -97,6 +99,17 @@ def test_a_lamp_mixed_with_transparent_keeps_its_brightness(tree, baked):
     surfels = baked(joined(tree, "ShaderNodeMixShader", clear, light, 0.5))
     assert np.abs(surfels.colors[:, 3] - 0.5).max() < 2e-3
     assert np.abs(surfels.emission - 3 * np.array(BLUE[:3])).max() < 2e-2
+
+
+def test_shaders_that_are_mixed_in_many_ways_are_each_baked_once(tree, baked):
+    first, second = (add(tree, "ShaderNodeBsdfDiffuse", color) for color in (RED, BLUE))
+    for _ in range(5):
+        first, second = (joined(tree, "ShaderNodeMixShader", first, second, factor) for factor in (0.25, 0.5))
+    shares = np.linalg.matrix_power([[0.75, 0.25], [0.5, 0.5]], 5)[0]
+    assert np.abs(baked(first).colors - shares @ (RED, BLUE)).max() < 2e-3
+    nodes = len(tree.nodes)
+    emitted(tree, first, "color")
+    assert len(tree.nodes) == nodes + 9
 
 
 def test_a_muted_mix_hands_on_its_first_shader(tree, baked):

@@ -8,6 +8,7 @@ import pytest
 from splat_addon.blender.export.scene import Notes
 from splat_addon.blender.export.shading import shading_material
 from splat_addon.blender.materials.material_surfaces import MeshLayers, material_surface
+from splat_addon.blender.materials.surface_shaders import parts, surface_shader
 
 RED, BLUE = (0.8, 0.1, 0.1, 1), (0.1, 0.2, 0.9, 1)
 
@@ -188,6 +189,29 @@ def test_a_ring_of_shaders_ends(made):
     made.tree.links.new(made.add("ShaderNodeBsdfDiffuse", Color=RED).outputs[0], first.inputs[1])
     made.show(second)
     assert np.allclose(made.color, RED)
+
+
+def test_a_shader_that_is_mixed_in_many_ways_is_one_part_with_all_its_shares(made):
+    """There are twice as many ways after each pair of mixes."""
+    ends = [made.add("ShaderNodeBsdfDiffuse", Color=color) for color in (RED, BLUE)]
+    first, second = ends
+    for _ in range(10):
+        first, second = (made.mix("ShaderNodeMixShader", first, second, factor) for factor in (0.25, 0.5))
+    made.show(first)
+    found = list(parts(surface_shader(made.material)))
+    assert [part.shader.node for part in found] == ends
+    assert np.isclose(sum(part.share for part in found), 1) and all(part.is_sure for part in found)
+    shares = np.linalg.matrix_power([[0.75, 0.25], [0.5, 0.5]], 10)[0]
+    assert np.allclose([part.share for part in found], shares)
+    assert np.allclose(made.color, shares @ (RED, BLUE))
+
+
+@pytest.mark.parametrize("kind", ["ShaderNodeMixShader", "ShaderNodeAddShader"])
+def test_a_lamp_that_is_joined_with_itself_shines_for_both(kind, made):
+    lamp = made.add("ShaderNodeEmission", Color=BLUE, Strength=3.0)
+    made.show(made.mix(kind, lamp, lamp))
+    times = 2 if kind == "ShaderNodeAddShader" else 1
+    assert np.allclose(made.shaded.emission, times * 3 * np.array(BLUE[:3]))
 
 
 UNSEEN = {

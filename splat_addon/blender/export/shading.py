@@ -127,7 +127,7 @@ def shading_material(material: bpy.types.Material | None, notes, own: Collection
     for sentence in passed_over.of_material(material, [part.shader for part in known]):
         notes.add(sentence)
     made = [_made(part.shader, material, notes, own) for part in known]
-    if len(made) > 1:
+    if len(made) > 1 or known[0].share > 1:
         notes.add(
             f"The material {material.name!r} mixes shaders, which this engine draws as one with their mean settings"
         )

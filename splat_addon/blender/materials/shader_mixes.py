@@ -38,36 +38,45 @@ def _emits(end: Node) -> bool:
 
 def emitted(tree: Tree, shader: Node, channel: str) -> Socket:
     """The output of new nodes for one channel of a tree of shaders; colours are weighted by coverage."""
-    found = _combined(tree, shader, channel)
+    found = _combined(tree, shader, channel, {})
     if channel == "opacity":
         found = _mixed(tree, "SUBTRACT", _WHITE, found)
     return found if isinstance(found, Socket) else _mixed(tree, "ADD", found, _BLACK)
 
 
-def _combined(tree: Tree, shader: Node | None, channel: str) -> Given:
+def _combined(tree: Tree, shader: Node | None, channel: str, made: dict[Node, Given]) -> Given:
+    """What one channel of a tree of shaders is. made: the same for those that were reached already, which is added to;
+    a ring of shaders ends at black."""
     if shader is None:
         return _BLACK
+    if shader not in made:
+        made[shader] = _BLACK
+        made[shader] = _of_one(tree, shader, channel, made)
+    return made[shader]
+
+
+def _of_one(tree: Tree, shader: Node, channel: str, made: dict[Node, Given]) -> Given:
     if shader.mute:
         link = passed_through_link(shader)
-        return _combined(tree, _source(link.from_socket) if link else None, channel)
+        return _combined(tree, _source(link.from_socket) if link else None, channel, made)
     if shader.type == "GROUP" and shader.node_tree is not None:
-        return _out_of_group(shader, channel)
+        return _out_of_group(shader, channel, made)
     if shader.type in ("MIX_SHADER", "ADD_SHADER"):
-        first, second = (_combined(tree, _source(s), channel) for s in shader.inputs if s.type == "SHADER")
+        first, second = (_combined(tree, _source(s), channel, made) for s in shader.inputs if s.type == "SHADER")
         if shader.type == "ADD_SHADER":
             return _mixed(tree, "ADD", first, second)
         return _mixed(tree, "MIX", first, second, shader.inputs[0])
     return _ENDS[channel](tree, shader)
 
 
-def _out_of_group(group: Node, channel: str) -> Given:
+def _out_of_group(group: Node, channel: str, made: dict[Node, Given]) -> Given:
     """A new output of a group, which belongs to this node alone, for its first shader."""
     shader = next(socket for socket in group.outputs if socket.type == "SHADER")
     inner = within(group, shader.identifier)
     if inner is None:
         return _BLACK
     tree = group.node_tree
-    found = _combined(tree, _source(inner), channel)
+    found = _combined(tree, _source(inner), channel, made)
     if not isinstance(found, Socket):
         return found
     added = tree.interface.new_socket(channel, in_out="OUTPUT", socket_type="NodeSocketColor")

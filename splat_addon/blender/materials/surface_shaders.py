@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import bpy
 
@@ -52,10 +52,10 @@ _WHITE_ENOUGH = 1e-3
 
 @dataclass(frozen=True)
 class Shader:
-    """A shader node. into: the socket that it feeds. groups: the group nodes around it, the innermost last."""
+    """A shader node. into: a socket that it feeds. groups: the group nodes around it, the innermost last."""
 
     node: Node
-    into: Socket
+    into: Socket = field(compare=False)
     groups: tuple[Node, ...] = ()
 
     def socket(self, name: str) -> Socket:
@@ -129,8 +129,8 @@ def why_unseen(material: bpy.types.Material) -> str | None:
 
 @dataclass(frozen=True)
 class Part:
-    """A shader in a tree of mixed and added ones. share: by which it is multiplied. is_sure: whether that is a
-    constant."""
+    """A shader in a tree of mixed and added ones. share: by which it is multiplied, in all places together. is_sure:
+    whether that is a constant."""
 
     shader: Shader
     share: float
@@ -149,33 +149,49 @@ def mix_factor(mix: Shader) -> tuple[float, bool]:
     return min(max(value, 0.0), 1.0), is_constant
 
 
-def parts(
-    shader: Shader,
-    share: float = 1.0,
-    is_sure: bool = True,
-    followed: tuple[Shader, ...] = (),
-    factor_of: Callable[[Shader], tuple[float, bool]] = mix_factor,
-) -> Iterator[Part]:
-    """The shaders that a tree of shaders mixes and adds, without those whose share is 0.
+def parts(shader: Shader, factor_of: Callable[[Shader], tuple[float, bool]] = mix_factor) -> Iterator[Part]:
+    """The shaders that a tree of shaders mixes and adds, each once, without those whose share is 0.
 
-    followed: the shaders that this one is mixed into; a ring of them ends. factor_of: as `mix_factor`.
+    factor_of: as `mix_factor`, called once for each Mix Shader.
     """
+    shares = {shader: (1.0, True)}
+    for each in reversed(_fed_first(shader, set())):
+        share, is_sure = shares.get(each, (0.0, True))
+        if is_sure and share == 0:
+            continue
+        sockets = _mixed(each)
+        if sockets is None:
+            yield Part(each, share, is_sure)
+            continue
+        factors = (1.0,) * len(sockets)
+        if each.node.type == "MIX_SHADER" and not each.node.mute:
+            factor, is_constant = factor_of(each)
+            factors, is_sure = (1 - factor, factor), is_sure and is_constant
+        for socket, factor in zip(sockets, factors, strict=True):
+            found = each.feeding(socket)
+            if found is not None:
+                before, was_sure = shares.get(found, (0.0, True))
+                shares[found] = before + share * factor, was_sure and is_sure
+
+
+def _mixed(shader: Shader) -> list[Socket] | None:
+    """The sockets of the shaders that this one mixes, adds or passes on; None if it does nothing of that."""
     node = shader.node
-    if (is_sure and share == 0) or shader in followed:
-        return
     if node.mute:
         link = passed_through_link(node)
-        sockets = [(link.from_socket, share, is_sure)] if link else []
-    elif node.type == "ADD_SHADER":
-        sockets = [(socket, share, is_sure) for socket in node.inputs]
-    elif node.type == "MIX_SHADER":
-        factor, is_constant = factor_of(shader)
-        shares = (share * (1 - factor), share * factor)
-        sockets = [(s, part, is_sure and is_constant) for s, part in zip(node.inputs[1:], shares, strict=True)]
-    else:
-        yield Part(shader, share, is_sure)
-        return
-    for socket, part, sure in sockets:
+        return [link.from_socket] if link else []
+    return {"ADD_SHADER": node.inputs[:], "MIX_SHADER": node.inputs[1:]}.get(node.type)
+
+
+def _fed_first(shader: Shader, reached: set[Shader]) -> list[Shader]:
+    """A tree of shaders, each once and before all that it is mixed into; in a ring, before all but one.
+
+    reached: those that are listed already, to which these are added.
+    """
+    reached.add(shader)
+    order = []
+    for socket in reversed(_mixed(shader) or ()):
         found = shader.feeding(socket)
-        if found is not None:
-            yield from parts(found, part, sure, (*followed, shader), factor_of)
+        if found is not None and found not in reached:
+            order += _fed_first(found, reached)
+    return [*order, shader]
