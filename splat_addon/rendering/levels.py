@@ -91,6 +91,12 @@ def replaced(before: Surfels, now: Surfels) -> None:
         _BEFORE[now] = _BUILT.get(before, _BEFORE.get(before)) if is_moved else None
 
 
+def forget_before(scene: Scene) -> None:
+    """Have the hierarchies of this frame built, not fitted from those of the frame before, which merge others."""
+    for instance in scene.surfels:
+        _BEFORE.pop(instance.surfels, None)
+
+
 def was_drawn(scene: Scene) -> None:
     """A picture of the scene is complete."""
     _DRAWN.update(instance.surfels for instance in scene.surfels)
@@ -115,8 +121,8 @@ def merging(
     samples of this scene, which may be one moment of a frame, that making it pays.
 
     Making it also pays for sets that further pictures will show: those that were drawn before, or may be drawn again,
-    unless an object's surfels are others in each frame. is_repeatable: what was drawn before does not count, and
-    hierarchies are built, not fitted. Shadow maps are not counted.
+    unless an object's surfels are others in each frame. is_repeatable: what was drawn before does not count.
+    Shadow maps are not counted.
     """
     found = []
     if not tolerance:
@@ -124,11 +130,11 @@ def merging(
     for surfels, instances in _by_set(filter(has_levels, scene.surfels)).items():
         spared = [_spared(instance, camera, tolerance) for instance in instances]
         if is_repeatable:
-            _BEFORE.pop(surfels, None)
-            is_kept = not any(instance.may_change for instance in instances)
+            is_kept, work = not any(instance.may_change for instance in instances), _BUILDING
         else:
             is_kept = surfels in _DRAWN or surfels not in _BEFORE
-        pays = max(spared) >= _LEAST_SPARED and (is_kept or samples * sum(spared) >= _work(surfels))
+            work = _BUILDING if _BEFORE.get(surfels) is None else _REFITTING
+        pays = max(spared) >= _LEAST_SPARED and (is_kept or samples * sum(spared) >= work)
         if pays or (surfels in _BUILT and not is_repeatable):
             found += instances
     return frozenset(found)
@@ -139,11 +145,6 @@ def _by_set(instances: Iterable[Instance]) -> dict[Surfels, list[Instance]]:
     for instance in instances:
         sets.setdefault(instance.surfels, []).append(instance)
     return sets
-
-
-def _work(surfels: Surfels) -> float:
-    """What making their hierarchy costs, per surfel."""
-    return _BUILDING if _BEFORE.get(surfels) is None else _REFITTING
 
 
 def _spared(instance: Instance, camera: Camera, tolerance: float) -> float:

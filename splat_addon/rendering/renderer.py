@@ -19,7 +19,7 @@ from .features.outputs import PIXELS, check_samplers
 from .features.sample_sum import SUM
 from .frame import OUTPUTS, Frame
 from .identity import Identified, nearer
-from .levels import was_drawn
+from .levels import forget_before, was_drawn
 from .panorama_faces import panorama_frame
 from .plan.build import plan
 from .plan.executor import Execution, TileContext, texture_key
@@ -126,6 +126,8 @@ class Renderer:
         self, scene, camera, settings, numbers: list[int], turns: Iterator, part: Tile | None, is_repeatable: bool
     ) -> Iterator[Frame]:
         """The pictures of these samples."""
+        if is_repeatable:
+            forget_before(scene)
 
         def draw(moved: Camera, of: Viewers, settings: Settings, told: Progress | None, part=None) -> Frame:
             frame_plan = plan(

@@ -374,8 +374,20 @@ def test_what_was_drawn_before_does_not_count_in_repeatable_pictures(may_change)
     was_drawn(bent)
     assert are_merged(of(scene)) == are_merged(of(bent)) == expected
     assert not plan(of(scene), near, SOME, is_repeatable=True).has("LEVELS")
-    # a hierarchy that was fitted to moved surfels merges others than one that is built for them
+    # planning changes nothing: another picture may still have fitted ones
+    assert [hierarchy_before(instance.surfels) for instance in bent.surfels] == built(scene)
+
+
+@pytest.mark.parametrize("is_repeatable", [True, False])
+def test_repeatable_pictures_have_hierarchies_that_are_built_and_not_fitted(is_repeatable, on_device):
+    """A hierarchy that was fitted to moved surfels merges others than one that is built for them."""
+    scene, camera = far_torus()
+    trees = built(scene)
+    bent, settings = next_frame(scene), replace(SOME, samples=4)
+    on_device(lambda device: Renderer(device).render(bent, camera, settings, is_repeatable=is_repeatable))
     assert all(hierarchy_before(instance.surfels) is None for instance in bent.surfels)
+    fitted = [now.entries is before.entries for now, before in zip(built(bent), trees, strict=True)]
+    assert fitted == [not is_repeatable] * len(trees)
 
 
 def test_surfels_that_have_come_to_rest_are_merged(on_device):
