@@ -40,12 +40,7 @@ def survey(mesh: TriangleMesh) -> Survey:
 
 
 def _survey(mesh: TriangleMesh) -> Survey:
-    """The fields of `Survey` in order, computed chunk by chunk.
-
-    is_closed: directed edges are added up under an antisymmetric weight of the hashes f of their ends' places, modulo
-        2^64: f g (g - f), which for the three edges of a triangle is the product of the differences. The sum of a chain
-        with a boundary is 0 only with a probability of about 2^-50, and degenerate triangles cancel out.
-    """
+    """The fields of `Survey` in order, computed chunk by chunk."""
     keys, count = mesh.places, len(mesh)
     flat, sums, volumes = [np.empty(0, np.intp)], np.empty(count, np.uint64), np.empty(count)
     is_used = np.zeros(len(mesh.positions), bool)
@@ -56,10 +51,7 @@ def _survey(mesh: TriangleMesh) -> Survey:
             a, b, c = keys.take(indices)
             np.add(a, b, out=sums[chunk])
             sums[chunk] += c
-            weights = a - b
-            weights *= b - c
-            weights *= c - a
-            boundary += weights.sum(dtype=np.uint64)
+            boundary += boundary_weights(a, b, c).sum(dtype=np.uint64)
 
             corners = corners_at(mesh.positions.T, indices)
             normals = doubled_areas(corners)
@@ -79,6 +71,19 @@ def _survey(mesh: TriangleMesh) -> Survey:
     is_closed = bool(boundary == 0)
     suspects = _suspects(sums, mesh)
     return Survey(np.concatenate(flat), suspects, facing_area, is_used, is_closed, volumes if is_closed else None)
+
+
+def boundary_weights(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
+    """(t,) uint64 whose sum over some triangles is 0 if they are closed. a, b, c: (t,) hashes of their corners' places.
+
+    Directed edges are added up under an antisymmetric weight of the hashes f of their ends' places, modulo 2^64:
+    f g (g - f), which for the three edges of a triangle is the product of the differences. The sum of a chain with a
+    boundary is 0 only with a probability of about 2^-50, and degenerate triangles cancel out.
+    """
+    weights = a - b
+    weights *= b - c
+    weights *= c - a
+    return weights
 
 
 def signed_volumes(positions: np.ndarray, triangles: np.ndarray) -> np.ndarray:

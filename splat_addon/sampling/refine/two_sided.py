@@ -19,7 +19,8 @@ from ..edges.ordering import order_of
 from ..ldc.depth_cube import rows_of
 from ..ldc.scan_conversion import Spans, batches, expand
 from ..mesh.connectivity import triangle_parts, twins
-from ..mesh.triangle_mesh import TriangleMesh, doubled_areas, gather_corners
+from ..mesh.survey import boundary_weights
+from ..mesh.triangle_mesh import TriangleMesh, corner_indices, doubled_areas, gather_corners
 
 #: Sheets are a card's sides if they are less than this far behind one another, in cells, and the cosine between their
 #: normals is below this, as at the edge of a thick card: there, too, the view from behind is blocked by the other side.
@@ -130,14 +131,10 @@ def _have_other_sides(
 
 def _closed_parts(mesh: TriangleMesh) -> np.ndarray:
     """(T,) the number of the connected part that a triangle belongs to if that is closed, -1 otherwise."""
-    labels, count = twins(mesh.places), len(mesh.positions)
-    corners = mesh.triangles if labels is None else labels.take(mesh.triangles)
-    start, end = corners.ravel(), np.roll(corners, -1, axis=1).ravel()
-    _, edge = np.unique(np.minimum(start, end) * count + np.maximum(start, end), return_inverse=True)
-    # an edge is closed if as many triangles have it in one direction as in the other
-    is_open = np.bincount(edge, np.sign(end - start)).take(edge) != 0
-    parts = triangle_parts(mesh.triangles, labels)
-    return np.where(np.isin(parts, parts.take(np.flatnonzero(is_open) // 3)), -1, parts)
+    parts = triangle_parts(mesh.triangles, twins(mesh.places))
+    boundaries = np.zeros(len(mesh.positions), np.uint64)
+    np.add.at(boundaries, parts, boundary_weights(*mesh.places.take(corner_indices(mesh.triangles))))
+    return np.where(boundaries.take(parts) == 0, parts, -1)
 
 
 def _unit(vectors: np.ndarray) -> np.ndarray:
