@@ -13,12 +13,12 @@ from functools import cache
 from typing import NamedTuple
 
 import bpy
-import numpy as np
 from mathutils import Matrix
 
 from ...sampling import NotSeenError, Outline
 from .animation import is_moving
 from .camera_density import without_camera
+from .placement import is_uneven
 
 #: Cells along the longest edge if no camera sees the object, and the minimum if a camera sees it from afar.
 FALLBACK_RESOLUTION, LEAST_RESOLUTION = 256, 16
@@ -75,7 +75,7 @@ def automatic_spacing(
         spacing = without_camera(asked, surface, matrix_world, depsgraph)["spacing"]
         reason = f"{asked['pixels']:.3g} pixels where the camera is nearest"
         reason += f", {margin:g} times finer as something moves" if moves else ""
-        if _is_uneven(matrix_world):
+        if is_uneven(matrix_world, MOST_UNEVEN):
             reason += "; its scale is uneven, which multiplies surfels: apply it, or choose Space > World"
     except NotSeenError:
         spacing, reason = _by_resolution(longest_edge, detail, "the camera does not see it")
@@ -95,12 +95,6 @@ def automatic_spacing(
         reason = f"at most {MOST_SURFELS:,} surfels, {finest / spacing:.1f} times coarser than {reason}"
         spacing = finest
     return Automatic(spacing, reason)
-
-
-def _is_uneven(matrix: Matrix) -> bool:
-    """Whether a matrix lengthens one direction much more than another."""
-    longest, *_, shortest = np.linalg.svd(np.array(matrix)[:3, :3], compute_uv=False)
-    return longest > MOST_UNEVEN * shortest
 
 
 def _of_wire(wanted: float, width: float, area: float) -> float:

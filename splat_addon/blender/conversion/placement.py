@@ -38,6 +38,12 @@ def without_scale(matrix_world: Matrix) -> Matrix:
     return Matrix.LocRotScale(location, rotation, None)
 
 
+def is_uneven(matrix_world: Matrix, most: float) -> bool:
+    """Whether a finite matrix lengthens one direction more than `most` times as much as another."""
+    longest, *_, shortest = np.linalg.svd(np.array(matrix_world)[:3, :3], compute_uv=False)
+    return longest > most * shortest
+
+
 def relative(matrix_world: np.ndarray, frame: Matrix) -> np.ndarray:
     """(4, 4) float64 map from the space of `matrix_world` to that of `frame`; exactly the identity if they are
     equal."""

@@ -12,8 +12,8 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import bpy
-from mathutils import Matrix
 
+from ..conversion.placement import is_uneven
 from ..materials.surface_shaders import Shader
 
 #: shader node type -> unsupported sockets, and the value at which each has no effect. Sockets that only matter together
@@ -123,19 +123,13 @@ _LIGHTS: _Rules = (
         "has a spread of less than 180°, which this engine passes over",
     ),
     (
-        lambda o: o.data.type == "SPOT" and _is_uneven(o.matrix_world),
+        lambda o: o.data.type == "SPOT" and is_uneven(o.matrix_world, 1 + _ROUNDING),
         "is scaled unevenly, and this engine keeps its beam round",
     ),
 )
 
 #: The relative difference at which a number is another one.
 _ROUNDING = 1e-4
-
-
-def _is_uneven(matrix: Matrix) -> bool:
-    """Whether a transform scales one axis more than another."""
-    scale = matrix.to_scale()
-    return max(map(abs, scale)) > min(map(abs, scale)) * (1 + _ROUNDING)
 
 
 _WORLDS: _Rules = (
