@@ -9,7 +9,7 @@ camera needs. `deform` lets surfels follow a mesh; points without faces become s
 
 from ..images import Image
 from .attributes.surfaces import Channel, NormalMap, Surface, Texture, VertexColors
-from .blocks import Block, joined_blocks, read_blocks, read_request, sample_block, write_blocks
+from .blocks import Block, joined_blocks, read_block, read_request, sample_block, write_blocks
 from .camera_density import NotSeenError, Outline, camera_spacing, outline
 from .deform.deforming import STRETCHED_SHARE, DeformingSurfels
 from .density import grid_spacing, predict_count
@@ -71,7 +71,7 @@ __all__ = [
     "outline",
     "predict_count",
     "projected_area",
-    "read_blocks",
+    "read_block",
     "read_request",
     "sample_block",
     "sample_mesh",

@@ -12,7 +12,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, fields, is_dataclass
 
 import numpy as np
@@ -36,7 +36,8 @@ class Block:
     """The samples of block `number` of `count`, from 0.
 
     made_from: hex digest of mesh, materials and options. images: the spans in each of the three images. large: those of
-    large samples. arrays: field of `Surfels` -> values of the images' samples, in span order.
+    large samples. arrays: field of `Surfels` -> values of the images' samples, in span order; of a block that was read
+    from a file, each is read when it is asked for.
     """
 
     number: int
@@ -44,7 +45,7 @@ class Block:
     made_from: str
     images: tuple[Spans, Spans, Spans]
     large: Large
-    arrays: dict[str, np.ndarray]
+    arrays: Mapping[str, np.ndarray]
 
 
 def sample_block(mesh: TriangleMesh, number: int, count: int, progress: Progress | None = None, **options) -> Block:
@@ -81,10 +82,7 @@ def joined_blocks(mesh: TriangleMesh, blocks: Iterable[Block], progress: Progres
         raise ValueError(f"Each of the {count} blocks must be given once, but these were given: {there}.")
     if run.is_empty:
         return Sampling(empty_surfels())
-    images, order = _in_order(blocks)
-    arrays = {}
-    for name in blocks[0].arrays:
-        arrays[name] = np.concatenate([block.arrays[name] for block in blocks])[order]
+    images, arrays = _in_order(blocks)
     large = {edge: _joined([block.large[edge] for block in blocks]) for edge in blocks[0].large}
     surface = surface_of(run.mesh.triangles, images, len(run.mesh.positions))
     missed = missed_components(run.mesh, surface)
@@ -101,9 +99,8 @@ def _order(spans: Spans) -> np.ndarray:
     return np.lexsort((spans.columns, spans.rows, spans.triangles))
 
 
-def _in_order(blocks: list[Block]) -> tuple[tuple[Spans, ...], np.ndarray]:
-    """The spans of all blocks in a single machine's order, and the index of each sample in the blocks' concatenated
-    arrays."""
+def _in_order(blocks: list[Block]) -> tuple[tuple[Spans, ...], dict[str, np.ndarray]]:
+    """The spans of all blocks, and the values of their samples, in a single machine's order."""
     sizes = [[int(spans.counts.sum(dtype=np.int64)) for spans in block.images] for block in blocks]
     starts = np.cumsum([0, *(size for block in sizes for size in block)])[:-1].reshape(-1, 3)
     images, orders = [], []
@@ -118,7 +115,22 @@ def _in_order(blocks: list[Block]) -> tuple[tuple[Spans, ...], np.ndarray]:
         owner, step = expand(spans.counts)
         images.append(spans)
         orders.append(np.concatenate(firsts)[order].take(owner) + step)
-    return tuple(images), np.concatenate(orders)
+    order = np.concatenate(orders)
+    places = np.empty_like(order)
+    places[order] = np.arange(len(order))
+    places = np.split(places, starts[1:, 0])
+    return tuple(images), {name: _gathered(blocks, name, places) for name in blocks[0].arrays}
+
+
+def _gathered(blocks: list[Block], name: str, places: list[np.ndarray]) -> np.ndarray:
+    """One field of all samples. places: for each block, where its samples are in the result."""
+    found = None
+    for block, rows in zip(blocks, places, strict=True):
+        values = block.arrays[name]
+        if found is None:
+            found = np.empty((sum(map(len, places)), *values.shape[1:]), values.dtype)
+        found[rows] = values
+    return found
 
 
 def _digest(run: SamplingRun) -> str:
@@ -162,32 +174,46 @@ def write_blocks(path: str | os.PathLike, blocks: list[Block], request: dict | N
         np.savez(stream, **arrays)
 
 
-def read_blocks(path: str | os.PathLike) -> list[Block]:
-    """Read a file that `write_blocks` made. Raises OSError, and ValueError with one sentence for a damaged file."""
+def read_block(path: str | os.PathLike, turn: int = 0) -> Block:
+    """Read the block of one mesh, by its place in the list, from a file that `write_blocks` made. Raises OSError, and
+    ValueError with one sentence for a damaged file."""
     with opened_arrays(path, *_KIND) as arrays:
-        return [_read(arrays, turn) for turn in range(sum(name.endswith(".about") for name in arrays.files))]
+        number, count = arrays[f"{turn}.about"].tolist()
+        names = [name.removeprefix(f"{turn}.") for name in arrays.files if name.startswith(f"{turn}.")]
+        edges = sorted((int(name.split(".")[0]) for name in names if name.endswith(".0.rows")), reverse=True)
+        large = {
+            edge: tuple(Spans(*(arrays[f"{turn}.{edge}.{axis}.{f.name}"] for f in fields(Spans))) for axis in range(3))
+            for edge in edges
+        }
+        made_from = bytes(arrays[f"{turn}.made_from"]).hex()
+    stored = [name.removeprefix("surfels.") for name in names if name.startswith("surfels.")]
+    return Block(number, count, made_from, large.pop(1), large, _InFile(path, f"{turn}.surfels.", stored))
+
+
+@dataclass(frozen=True, eq=False)
+class _InFile(Mapping):
+    """Arrays that are read from a file of blocks each time they are asked for. prefix: of their names in the file."""
+
+    path: str | os.PathLike
+    prefix: str
+    names: list[str]
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        with opened_arrays(self.path, *_KIND) as arrays:
+            return arrays[self.prefix + name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.names)
+
+    def __len__(self) -> int:
+        return len(self.names)
 
 
 def read_request(path: str | os.PathLike) -> dict:
-    """Read only the request of such a file. Raises the exceptions of `read_blocks`."""
+    """Read only the request of such a file. Raises the exceptions of `read_block`."""
     with opened_arrays(path, *_KIND) as arrays:
         return json.loads(bytes(arrays["request"]))
 
 
 #: what the file should be, and what to do if it is not
 _KIND = "a file of blocks", "convert the block again"
-
-
-def _read(arrays, turn: int) -> Block:
-    number, count = arrays[f"{turn}.about"].tolist()
-    edges = {
-        int(name.split(".")[1]) for name in arrays.files if name.endswith(".0.rows") and name.startswith(f"{turn}.")
-    }
-    large = {
-        edge: tuple(Spans(*(arrays[f"{turn}.{edge}.{axis}.{f.name}"] for f in fields(Spans))) for axis in range(3))
-        for edge in sorted(edges, reverse=True)
-    }
-    images = large.pop(1)
-    prefix = f"{turn}.surfels."
-    surfels = {name.removeprefix(prefix): arrays[name] for name in arrays.files if name.startswith(prefix)}
-    return Block(number, count, bytes(arrays[f"{turn}.made_from"]).hex(), images, large, surfels)

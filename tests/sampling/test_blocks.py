@@ -2,6 +2,8 @@
 """A mesh that several machines sample in blocks of the grid has the same surfels, bit by bit, as on one machine."""
 
 import math
+import tracemalloc
+import zipfile
 from dataclasses import replace
 
 import numpy as np
@@ -15,7 +17,7 @@ from splat_addon.sampling import (
     Tolerance,
     TriangleMesh,
     joined_blocks,
-    read_blocks,
+    read_block,
     read_request,
     sample_block,
     sample_surface,
@@ -55,7 +57,7 @@ def test_blocks_are_one_run_bit_by_bit(name, count, rubble, tmp_path):
     files = [tmp_path / str(number) for number in range(count)]
     for number, file in enumerate(files):
         write_blocks(file, [sample_block(rubble, number, count, **OPTIONS[name])])
-    blocks = [block for file in reversed(files) for block in read_blocks(file)]
+    blocks = [read_block(file) for file in reversed(files)]
     joined = joined_blocks(rubble, blocks, **OPTIONS[name])
     assert len(whole.surfels) > 1000 and whole.small_parts > 10
     assert (joined.small_parts, joined.saved, joined.error) == (whole.small_parts, whole.saved, whole.error)
@@ -103,7 +105,44 @@ def test_blocks_of_other_materials_are_refused(rubble):
 def test_a_request_goes_with_the_blocks(tmp_path):
     request = {"objects": ["K\u00e4fer"], "spacing": 0.1}
     write_blocks(tmp_path / "block", [], request)
-    assert read_request(tmp_path / "block") == request and read_blocks(tmp_path / "block") == []
+    assert read_request(tmp_path / "block") == request
+    with pytest.raises(ValueError, match="is not a file of blocks"):
+        read_block(tmp_path / "block")
+
+
+def _peak(made) -> int:
+    """Most bytes that a call holds at once."""
+    tracemalloc.start()
+    try:
+        made()
+        return tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+
+
+def test_joining_reads_one_mesh_and_holds_its_samples_once(rubble, tmp_path):
+    """Large splats are few here, so that nearly all bytes are of the samples' fields."""
+    options, files = {"resolution": 300}, [tmp_path / str(number) for number in range(3)]
+    for number, file in enumerate(files):
+        write_blocks(file, [sample_block(rubble, number, 3, **options)] * 4)
+    surfels = sample_surface(rubble, **options).surfels
+    samples = sum(array.nbytes for array in surfels.arrays().values())
+    assert 4 * samples < sum(file.stat().st_size for file in files)
+    joined = _peak(lambda: joined_blocks(rubble, (read_block(file, 2) for file in files), **options))
+    assert joined < 1.2 * _peak(lambda: sample_surface(rubble, **options))
+    assert _peak(lambda: read_block(files[1], 2)) < 0.2 * samples
+
+
+def test_samples_that_are_damaged_are_named_when_they_are_read(rubble, tmp_path):
+    file = tmp_path / "block"
+    write_blocks(file, [sample_block(rubble, 0, 1, resolution=20)])
+    with zipfile.ZipFile(file) as archive:
+        start = archive.getinfo("0.surfels.positions.npy").header_offset
+    content = bytearray(file.read_bytes())
+    content[start + 500] ^= 1
+    file.write_bytes(content)
+    with pytest.raises(ValueError, match="block is damaged or is not a file of blocks; convert the block again"):
+        joined_blocks(rubble, [read_block(file)], resolution=20)
 
 
 def _text(file):
@@ -125,7 +164,7 @@ def _no_json(file):
 
 
 @pytest.mark.parametrize("damage", [_text, _cut, _one_array, _no_json])
-@pytest.mark.parametrize("read", [read_blocks, read_request])
+@pytest.mark.parametrize("read", [read_block, read_request])
 def test_a_damaged_file_is_named(damage, read, rubble, tmp_path):
     file = tmp_path / "block"
     write_blocks(file, [sample_block(rubble, 0, 2, resolution=5)])
@@ -137,4 +176,4 @@ def test_a_damaged_file_is_named(damage, read, rubble, tmp_path):
 
 def test_a_file_that_is_not_there_is_an_error_of_the_system(tmp_path):
     with pytest.raises(FileNotFoundError):
-        read_blocks(tmp_path / "nowhere")
+        read_block(tmp_path / "nowhere")

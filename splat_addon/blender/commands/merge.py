@@ -11,7 +11,7 @@ from pathlib import Path
 import bpy
 
 from ...rendering.frame_parts import joined_parts
-from ...sampling import joined_blocks, read_blocks, read_request
+from ...sampling import joined_blocks, read_block, read_request
 from ..engine import final_render
 from ..export.camera import picture_size
 from .convert import (
@@ -125,7 +125,7 @@ def _join(files: list[Path]) -> None:
 
     def joined(mesh, **how):
         turn = next(turns)
-        return joined_blocks(mesh, (read_blocks(file)[turn] for file in files), **how)
+        return joined_blocks(mesh, (read_block(file, turn) for file in files), **how)
 
     batch = batch_of(sources, options, joined)
     for conversion in batch.prepared(bpy.context):
