@@ -9,8 +9,9 @@ precision.
 from __future__ import annotations
 
 from copy import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
+from typing import Self
 
 import numpy as np
 
@@ -89,6 +90,11 @@ class Shape:
     def has_own_material(self) -> bool:
         """Whether any material value is stored per surfel or corner."""
         return not all(a is None for a in (self.roughness, self.metallic, self.emission))
+
+    def take(self, rows: np.ndarray) -> Self:
+        """Some of the surfels, or corners."""
+        own = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in ("origin", "is_solid")}
+        return replace(self, **{name: array[rows] for name, array in own.items() if array is not None})
 
     @cached_property
     def brightest(self) -> float:

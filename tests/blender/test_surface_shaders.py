@@ -217,7 +217,6 @@ def test_a_lamp_that_is_joined_with_itself_shines_for_both(kind, made):
 UNSEEN = {
     "a volume": ("has no surface but a volume, which is not drawn", "ShaderNodeVolumeScatter", "Volume"),
     "a hole": (None, "ShaderNodeBsdfTransparent", "Surface"),
-    "a holdout": ("is a Holdout, through which this engine shows what lies behind", "ShaderNodeHoldout", "Surface"),
 }
 
 
@@ -230,6 +229,15 @@ def test_what_covers_nothing_becomes_no_surfels_and_is_named(what, made, convert
         RuntimeError, match=r"None of its faces is seen .*'made'.*; give them a material with a surface"
     ):
         convert(resolution=4)
+
+
+def test_a_holdout_becomes_opaque_surfels_and_says_nothing_unless_it_is_mixed(made, convert, surfels_of):
+    holdout = made.show(made.add("ShaderNodeHoldout")).tree.nodes["Holdout"]
+    assert made.said == []
+    (surfels,) = map(surfels_of, convert(resolution=4))
+    assert (surfels.colors == (0, 0, 0, 1)).all()
+    made.show(made.mix("ShaderNodeMixShader", holdout, made.add("ShaderNodeBsdfDiffuse"), 0.5))
+    assert "The material 'made' mixes a Holdout, through which this engine shows what lies behind" in made.said
 
 
 def test_faces_that_are_seen_are_converted_without_the_others(made, add_mesh, convert, surfels_of, capfd):

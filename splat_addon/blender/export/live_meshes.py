@@ -46,6 +46,7 @@ from ..geometry.split_meshes import MeshParts, parts_by_group
 from ..materials.surface_textures import kept_normal_maps, kept_textures
 from ..mesh_sampling_settings import Form
 from . import passed_over
+from .holdouts import with_holes
 from .object_detail import finer
 from .shading import shading_material
 
@@ -225,8 +226,12 @@ class LiveMeshes:
         self.counts["meshes"] += 1
         self.counts["surfels"] += len(live.shown[1])
         return [
-            Instance(live.shown[1], textures=textures, **place.of_instance(live.materials, live.spacing))
+            part
             for place in live.sampled_at
+            for part in with_holes(
+                Instance(live.shown[1], textures=textures, **place.of_instance(live.materials, live.spacing)),
+                live.content.materials,
+            )
         ]
 
     def _polygon_instances(self, live: _LiveMesh, notes) -> list[PolygonInstance]:
@@ -239,9 +244,13 @@ class LiveMeshes:
             notes.add(sentence)
         looked_up = {"textures": live.kept_textures(), "normal_maps": live.kept_normal_maps()}
         return [
-            PolygonInstance(part, **looked_up, **place.of_instance(live.materials, live.spacing))
-            for part in live.drawn[1]
+            part
+            for shape in live.drawn[1]
             for place in live.drawn_at
+            for part in with_holes(
+                PolygonInstance(shape, **looked_up, **place.of_instance(live.materials, live.spacing)),
+                live.content.materials,
+            )
         ]
 
     def _lasting_key(self, evaluated: bpy.types.Object, group: str) -> tuple:

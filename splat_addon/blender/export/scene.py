@@ -27,6 +27,7 @@ from ..materials.material_override import Overridden, override_of
 from ..materials.surface_textures import TextureStore
 from ..mesh_sampling_settings import Form, are_meshes_texture_mapped, density_of_meshes, form_of
 from . import passed_over
+from .holdouts import with_holes
 from .light_linking import LightSets
 from .live_meshes import LiveMeshes, Place
 from .object_detail import detail_of
@@ -296,13 +297,14 @@ def _instances(
         notes.add(sentence)
     if override is not None:
         materials = (shading_material(override, notes),)
-        return [Instance(store.overridden.get(surfels, override, notes), matrix_world, materials, **fields)]
+        painted = store.overridden.get(surfels, override, notes)
+        return with_holes(Instance(painted, matrix_world, materials, **fields), [override])
     own = surfels.arrays().keys()
     # a point cloud made by modifiers has no slots of its own
-    slots = object_.original.evaluated_get(depsgraph).material_slots
-    materials = tuple(shading_material(slot.material, notes, own) for slot in slots)
-    textures = tuple(store.textures.get(slot.material, notes) for slot in slots) if surfels.has_uvs else ()
-    return [Instance(surfels, matrix_world, materials, textures=textures, **fields)]
+    slots = [slot.material for slot in object_.original.evaluated_get(depsgraph).material_slots]
+    materials = tuple(shading_material(material, notes, own) for material in slots)
+    textures = tuple(store.textures.get(material, notes) for material in slots) if surfels.has_uvs else ()
+    return with_holes(Instance(surfels, matrix_world, materials, textures=textures, **fields), slots)
 
 
 def _stream_of(owner: bpy.types.Object, store: SurfelStore, notes: Notes) -> Stream | None:
@@ -327,7 +329,11 @@ def _streamed(
     to_origin[:3, 3] = -stream.file.origin
     kept = stream.coarsest, 0, 0
     made = _instances(object_, kept, depsgraph, matrix_world @ to_origin, fields, store, notes, None)
-    return [replace(instance, stream=stream) for instance in made]
+    if len(made) > 1:
+        notes.add(
+            f"{object_.name} cuts no hole, as its surfels come from a file and only some of its materials are a Holdout"
+        )
+    return [replace(instance, shape=stream.coarsest, stream=stream) for instance in made[:1]]
 
 
 @contextmanager

@@ -14,7 +14,7 @@ from ...rendering import Finish, Light, Material
 from ...rendering.scene.material import reflectance
 from ..materials.mean_surfaces import mean_of
 from ..materials.node_trees import uses_nodes
-from ..materials.surface_shaders import CLEAR, Part, Shader, parts, surface_shader, why_unseen
+from ..materials.surface_shaders import CLEAR, Part, Shader, is_holdout, parts, surface_shader, why_unseen
 from . import passed_over
 
 #: Blender's light type -> its emitting area, by which the energy of a non-normalised light is multiplied, as in Cycles:
@@ -107,7 +107,7 @@ def shading_material(material: bpy.types.Material | None, notes, own: Collection
 
     own: fields that the surfels have themselves, so that missing textures for them are not reported.
     """
-    if material is None or not uses_nodes(material):
+    if material is None or not uses_nodes(material) or is_holdout(material):
         return Material(index=material.pass_index if material else 0)
     shader = surface_shader(material)
     if why := why_unseen(material):
@@ -116,7 +116,10 @@ def shading_material(material: bpy.types.Material | None, notes, own: Collection
         if shader is None or not shader.is_clear:
             notes.add(f"The material {material.name!r} {why}")
         return Material(index=material.pass_index)
-    mixed = [part for part in parts(shader) if part.shader.node.type not in CLEAR] if shader else []
+    mixed = list(parts(shader)) if shader else []
+    if any(part.shader.node.type == "HOLDOUT" for part in mixed):
+        notes.add(f"The material {material.name!r} mixes a Holdout, through which this engine shows what lies behind")
+    mixed = [part for part in mixed if part.shader.node.type not in CLEAR]
     known = [part for part in mixed if part.shader.node.type in _SHADERS]
     if not known:
         notes.add(

@@ -19,7 +19,7 @@ from .mean_surfaces import mean_of
 from .node_products import AttributeSource, ImageSource, Product, linked, outer, product
 from .node_trees import uses_nodes
 from .shader_mixes import channels
-from .surface_shaders import METALS, SHADERS, Shader, surface_shader, why_unseen
+from .surface_shaders import METALS, SHADERS, Shader, is_holdout, surface_shader, why_unseen
 from .texture_images import UnreadableError, linear_pixels
 from .texture_placement import placement, uv_layer
 from .transparent_mixes import TransparentMix, transparent_mix
@@ -127,6 +127,8 @@ def material_surface(material: bpy.types.Material | None, layers: MeshLayers) ->
         return found, []
     if why_unseen(material) is not None:
         return Surface(Channel((0.0, 0.0, 0.0, 0.0))), []
+    if is_holdout(material):
+        return Surface(Channel((0.0, 0.0, 0.0, 1.0))), []
     if shader is None:
         return plain, [Unread("color", "no shader at its output")]
     if shader.node.bl_idname in SHADERS:

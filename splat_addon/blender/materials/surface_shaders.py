@@ -43,7 +43,7 @@ SHADERS = {
 #: Shader nodes that are metals.
 METALS = ("ShaderNodeBsdfAnisotropic", "ShaderNodeBsdfMetallic")
 
-#: Shaders that let everything through and cover nothing.
+#: Shaders that let everything through and cover nothing where they are mixed with others.
 CLEAR = ("BSDF_TRANSPARENT", "HOLDOUT")
 
 #: How far from white a Transparent BSDF's colour may be: a tinted one filters what is behind it.
@@ -109,6 +109,12 @@ def shader_at(socket: Socket, groups: tuple[Node, ...] = ()) -> Shader | None:
     return None
 
 
+def is_holdout(material: bpy.types.Material) -> bool:
+    """Whether a material's surface is a Holdout, which cuts a hole."""
+    shader = surface_shader(material) if uses_nodes(material) else None
+    return shader is not None and shader.node.type == "HOLDOUT" and not shader.node.mute
+
+
 def why_unseen(material: bpy.types.Material) -> str | None:
     """The end of a sentence about a material that covers nothing, so that its faces are not drawn."""
     if not uses_nodes(material):
@@ -118,12 +124,10 @@ def why_unseen(material: bpy.types.Material) -> str | None:
         output = material.node_tree.get_output_node("ALL")
         has_volume = output is not None and linked(output.inputs["Volume"]) is not None
         return "has no surface but a volume, which is not drawn" if has_volume else None
-    if shader.node.mute or shader.node.type not in CLEAR:
+    if shader.node.mute or shader.node.type != "BSDF_TRANSPARENT":
         return None
     if shader.is_clear:
         return "is a Transparent BSDF, through which everything is seen"
-    if shader.node.type == "HOLDOUT":
-        return "is a Holdout, through which this engine shows what lies behind"
     return "is a tinted Transparent BSDF, through which this engine shows everything untinted"
 
 

@@ -65,6 +65,47 @@ def test_a_holdout_cuts_the_alpha_that_cycles_cuts(scene, add_camera, add_object
     assert (ours[20:22, 20:22] == 0).all() and (ours[8:10, 8:10] == 0).all() and (ours[4, 26, 3] == 1).all()
 
 
+@pytest.mark.parametrize("kind", ["POLYGONS", "SURFELS", "converted", "overridden"])
+@pytest.mark.parametrize("film", [False, True])
+def test_a_holdout_material_cuts_the_alpha_that_cycles_cuts(
+    scene, add_camera, add_object, switch_to_cycles, convert, picture, film, kind
+):
+    """A square is held out, and half of another one, in front of a wall and in front of the world."""
+    scene.render.film_transparent = film
+    add_camera(type="ORTHO", ortho_scale=4)
+    plain, hole = (bpy.data.materials.new(name) for name in ("plain", "hole"))
+    if bpy.app.version < (5, 0, 0):
+        plain.use_nodes = hole.use_nodes = True
+    tree = hole.node_tree
+    tree.links.new(tree.nodes.new("ShaderNodeHoldout").outputs[0], tree.get_output_node("ALL").inputs["Surface"])
+    wall, whole = mesh_square(add_object, 8, (1, 0, -1)), mesh_square(add_object, 1, (0.75, 0.75, 0))
+    wall.scale.x = 0.25
+    half = bpy.data.meshes.new("half")
+    places = [(x, y, 0) for y in (-1.5, -0.5) for x in (-1.5, -0.5, 0.5)]
+    half.from_pydata(places, [], [(0, 1, 4, 3), (1, 2, 5, 4)])
+    half.polygons[1].material_index = 1
+    meshes = {wall.data: [plain], whole.data: [hole], half: [plain, hole]}
+    for object_ in (wall, whole, add_object(half)):
+        for material in meshes[object_.data]:
+            object_.data.materials.append(material)
+        object_.select_set(True)
+    if kind == "overridden":
+        scene.view_layers[0].material_override = hole
+    ours = scene.render.engine
+    switch_to_cycles(filter_width=0.01)
+    theirs = picture()
+    scene.render.engine = ours
+    settings = scene.surfel_splatting
+    settings.render_meshes = "SURFELS" if kind == "SURFELS" else "POLYGONS"
+    settings.mesh_density, settings.mesh_resolution = "RESOLUTION", 64
+    if kind in ("converted", "overridden"):
+        convert(resolution=64)
+    ours = picture()
+    np.testing.assert_allclose(ours[..., 3], theirs[..., 3], atol=0.02)
+    assert (ours[20:24, 20:24] == 0).all() and (ours[6:10, 14:18] == 0).all()
+    assert ((ours[6:10, 6:10, 3] == 1) | (kind == "overridden")).all()
+
+
 def mesh_square(add_object, side, location):
     mesh = bpy.data.meshes.new("square")
     half = side / 2
