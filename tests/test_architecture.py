@@ -98,3 +98,17 @@ def test_every_shader_opens_with_references_and_summary():
         head = file.read_text(encoding="utf-8").splitlines()
         assert head[0].startswith("// References: "), file
         assert any(line.startswith("// Summary: ") for line in head[:8]), file
+
+
+#: Lines of the longest function: more do not fit on a page.
+LONGEST = 60
+
+
+def test_every_function_fits_on_a_page():
+    long = [
+        f"{file.relative_to(ROOT)}: {node.name} has {node.end_lineno - node.lineno + 1} lines"
+        for file in FILES
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8")))
+        if isinstance(node, ast.FunctionDef) and node.end_lineno - node.lineno >= LONGEST
+    ]
+    assert long == []

@@ -17,6 +17,7 @@ from ..rendering.scene.finish import PLAIN
 from ..rendering.scene.light import MAX_LIGHT_SETS
 from ..rendering.settings import Settings
 from ..surfels import HIDDEN, Surfels, field_values
+from .brdf import unit
 from .textures import surfel_textures
 
 #: Weight of a back relative to a front, and how much farther it is moved away: shaders/lib/sides.glsl.
@@ -135,7 +136,7 @@ def _instance_splats(instance: Instance, camera: Camera, with_finish: bool) -> S
     orientation = -1 if np.linalg.det(linear) < 0 else 1
     cosine = _outward_cosine(orientation * plane, center, camera)
     outward = orientation * _outward_normals(surfels) @ _cofactors(linear).T
-    normal = _unit(np.where(cosine < 0, -1, 1)[:, None] * outward)
+    normal = unit(np.where(cosine < 0, -1, 1)[:, None] * outward)
     color = surfels.colors[:, :3].astype(np.float64)
     uvs = _no_uvs(len(surfels))
     if instance.is_textured:
@@ -186,12 +187,6 @@ def _outward_normals(surfels: Surfels) -> np.ndarray:
     u, v = (axis.astype(np.float64) for axis in surfels.half_axes())
     normals = surfels.normals.astype(np.float64)
     return np.where(np.einsum("ij,ij->i", normals, np.cross(u, v))[:, None] < 0, -normals, normals)
-
-
-def _unit(vectors: np.ndarray) -> np.ndarray:
-    """(N, 3) vectors of length 1; zero where they have none."""
-    length = np.linalg.norm(vectors, axis=1, keepdims=True)
-    return np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0)
 
 
 def has_finish(scene: Scene) -> bool:

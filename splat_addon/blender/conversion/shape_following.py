@@ -17,7 +17,7 @@ from mathutils.bvhtree import BVHTree
 from ...sampling import TriangleMesh
 from ...surfels import Surfels
 from ..geometry.node_groups import known_group, new_modifier_group, uses_group
-from ..geometry.node_maths import Maths, enabled
+from ..geometry.node_maths import Maths, Socket, enabled
 from ..geometry.reading import read_values
 from ..ids import POINT_ATTRIBUTES, REST, SHAPE_GROUP
 from .changing_shape import is_deformed, rebuilt_by
@@ -229,45 +229,9 @@ def _new_group() -> bpy.types.NodeTree:
     given, result = group.nodes.new("NodeGroupInput"), group.nodes.new("NodeGroupOutput")
     info = group.nodes.new("GeometryNodeObjectInfo")
     link(given.outputs["Source"], info.inputs["Object"])
-    shape = info.outputs["Geometry"]
-
-    a, b, c = (m.sampled(shape, m.attribute(name, "INT")) for name in _VERTICES)
-    edge_1, edge_2 = m.vector("SUBTRACT", b, a), m.vector("SUBTRACT", c, a)
-    across = m.vector("CROSS_PRODUCT", edge_1, edge_2)
-    normal, area = m.vector("NORMALIZE", across), m.length(across)
-    basis = edge_1, edge_2, normal
-    place = m.vector("ADD", a, m.combined(basis, m.attribute(_PLACE, "FLOAT_VECTOR")))
-    u, v = (m.combined(basis, m.attribute(name, "FLOAT_VECTOR")) for name in (_ALONG_X, _ALONG_Y))
-    # the dual basis transforms normals, the edges transform vectors
-    dual = (
-        m.vector("SCALE", m.vector("CROSS_PRODUCT", edge_2, normal), scale=m.number("DIVIDE", 1.0, area)),
-        m.vector("SCALE", m.vector("CROSS_PRODUCT", normal, edge_1), scale=m.number("DIVIDE", 1.0, area)),
-        normal,
-    )
-    bound = m.vector("NORMALIZE", m.combined(dual, m.attribute(_NORMAL, "FLOAT_VECTOR")))
-    first, *others = (m.sampled_normal(shape, m.attribute(name, "INT")) for name in _CORNERS)
-    shares = m.separated(m.attribute(_PLACE, "FLOAT_VECTOR"))
-    mean = first
-    for other, share in zip(others, shares, strict=False):
-        mean = m.vector("ADD", mean, m.vector("SCALE", m.vector("SUBTRACT", other, first), scale=share))
-    is_mean = m.attribute(_IS_MEAN, "FLOAT")
-    mean = m.vector("SCALE", m.vector("NORMALIZE", mean), scale=is_mean)
-    rest = m.vector("SCALE", bound, scale=m.number("SUBTRACT", 1.0, is_mean))
-    shading = m.vector("ADD", mean, rest)
-
-    # u and v are conjugate half-diameters of the new ellipse; rotated by t they become its half-axes. Textures and clip
-    # lines refer to the axes: surfels that have them are not rotated, and if sheared they are as long as u and v
-    crossed = m.number("MULTIPLY", m.dot(u, v), 2.0)
-    t = m.number("MULTIPLY", m.number("ARCTAN2", crossed, m.number("SUBTRACT", m.dot(u, u), m.dot(v, v))), 0.5)
-    t = m.number("MULTIPLY", t, given.outputs["Turns"])
-    cosine, sine = m.number("COSINE", t), m.number("SINE", t)
-    x = m.vector("ADD", m.vector("SCALE", u, scale=cosine), m.vector("SCALE", v, scale=sine))
-    y = m.vector("SUBTRACT", m.vector("SCALE", v, scale=cosine), m.vector("SCALE", u, scale=sine))
-    was = m.separated(m.attribute(POINT_ATTRIBUTES["scales"].name, "FLOAT_VECTOR"))
-    least = m.number("MULTIPLY", m.number("MINIMUM", was[0], was[1]), _LEAST_SHRINKING)
-    sizes = [m.number("MAXIMUM", m.length(axis), least) for axis in (x, y)]
-
-    stored = given.outputs["Geometry"]
+    shape, stored = info.outputs["Geometry"], given.outputs["Geometry"]
+    place, u, v, shading = _carried(m, shape)
+    x, y, sizes = _half_axes(m, u, v, given.outputs["Turns"])
     for layout, value in (
         (POINT_ATTRIBUTES["radius"], m.number("MAXIMUM", *sizes)),
         (POINT_ATTRIBUTES["rotations"], m.rotation(x, y)),
@@ -294,3 +258,47 @@ def _new_group() -> bpy.types.NodeTree:
     link(moved.outputs[0], enabled(switch.inputs, "True"))
     link(enabled(switch.outputs, "Output"), result.inputs[0])
     return group
+
+
+def _carried(m: Maths, shape: Socket) -> tuple[Socket, Socket, Socket, Socket]:
+    """The place, both half-axes and the shading normal of a surfel on its triangle. shape: the source's geometry."""
+    a, b, c = (m.sampled(shape, m.attribute(name, "INT")) for name in _VERTICES)
+    edge_1, edge_2 = m.vector("SUBTRACT", b, a), m.vector("SUBTRACT", c, a)
+    across = m.vector("CROSS_PRODUCT", edge_1, edge_2)
+    normal, area = m.vector("NORMALIZE", across), m.length(across)
+    basis = edge_1, edge_2, normal
+    place = m.vector("ADD", a, m.combined(basis, m.attribute(_PLACE, "FLOAT_VECTOR")))
+    u, v = (m.combined(basis, m.attribute(name, "FLOAT_VECTOR")) for name in (_ALONG_X, _ALONG_Y))
+    # the dual basis transforms normals, the edges transform vectors
+    dual = (
+        m.vector("SCALE", m.vector("CROSS_PRODUCT", edge_2, normal), scale=m.number("DIVIDE", 1.0, area)),
+        m.vector("SCALE", m.vector("CROSS_PRODUCT", normal, edge_1), scale=m.number("DIVIDE", 1.0, area)),
+        normal,
+    )
+    bound = m.vector("NORMALIZE", m.combined(dual, m.attribute(_NORMAL, "FLOAT_VECTOR")))
+    first, *others = (m.sampled_normal(shape, m.attribute(name, "INT")) for name in _CORNERS)
+    shares = m.separated(m.attribute(_PLACE, "FLOAT_VECTOR"))
+    mean = first
+    for other, share in zip(others, shares, strict=False):
+        mean = m.vector("ADD", mean, m.vector("SCALE", m.vector("SUBTRACT", other, first), scale=share))
+    is_mean = m.attribute(_IS_MEAN, "FLOAT")
+    mean = m.vector("SCALE", m.vector("NORMALIZE", mean), scale=is_mean)
+    rest = m.vector("SCALE", bound, scale=m.number("SUBTRACT", 1.0, is_mean))
+    shading = m.vector("ADD", mean, rest)
+    return place, u, v, shading
+
+
+def _half_axes(m: Maths, u: Socket, v: Socket, turns: Socket) -> tuple[Socket, Socket, list[Socket]]:
+    """The half-axes of the ellipse that has the half-diameters u and v, and their lengths. turns: 0 keeps u and v."""
+    # u and v are conjugate half-diameters of the new ellipse; rotated by t they become its half-axes. Textures and clip
+    # lines refer to the axes: surfels that have them are not rotated, and if sheared they are as long as u and v
+    crossed = m.number("MULTIPLY", m.dot(u, v), 2.0)
+    t = m.number("MULTIPLY", m.number("ARCTAN2", crossed, m.number("SUBTRACT", m.dot(u, u), m.dot(v, v))), 0.5)
+    t = m.number("MULTIPLY", t, turns)
+    cosine, sine = m.number("COSINE", t), m.number("SINE", t)
+    x = m.vector("ADD", m.vector("SCALE", u, scale=cosine), m.vector("SCALE", v, scale=sine))
+    y = m.vector("SUBTRACT", m.vector("SCALE", v, scale=cosine), m.vector("SCALE", u, scale=sine))
+    was = m.separated(m.attribute(POINT_ATTRIBUTES["scales"].name, "FLOAT_VECTOR"))
+    least = m.number("MULTIPLY", m.number("MINIMUM", was[0], was[1]), _LEAST_SHRINKING)
+    sizes = [m.number("MAXIMUM", m.length(axis), least) for axis in (x, y)]
+    return x, y, sizes

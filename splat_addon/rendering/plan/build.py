@@ -58,8 +58,6 @@ def plan(
     live = {texture for read_back in READ_BACK for texture in read_back(planning)}
     steps, _ = trimmed(changed(found, lambda p: _with_parts(planning, p, present)), live)
     is_linear = planning.find(depth_format.linear)[0]
-    each = settings.multisampling and not settings.sample_shading
-    storage = get_storage(settings.storage).name
     made = FramePlan(
         tiles=tiles(part or (0, 0, *camera.size), tile_edge(planning)),
         samples=settings.supersampling,
@@ -68,20 +66,12 @@ def plan(
         # the box that several samples add to a pixel is wider than the Gaussian of more than 2 x 2 of its own
         filter_variance=camera.pixel_variance if settings.supersampling == 1 else PIXEL_VARIANCE,
         method=settings.method,
-        storage=storage,
+        storage=get_storage(settings.storage).name,
         sum_format=settings.sum_format,
         linear_depth=is_linear,
         steps=steps,
         variants=frozenset(["linear"] if is_linear else []),
-        choices=(
-            ("method", settings.method),
-            ("storage", storage),
-            ("shading", settings.shading),
-            ("sum_format", settings.sum_format),
-            ("samples", "mean" if each else "each"),
-            ("sides", "alike" if settings.as_printed else "told_apart"),
-            ("rest_opacity", "printed" if settings.as_printed else "surfaces"),
-        ),
+        choices=_choices(settings),
         margin=sum(margin(planning) for margin in MARGINS),
         facts=planning.facts,
         features=tuple(planning.features),
@@ -90,6 +80,20 @@ def plan(
     for check in CHECKS:
         check(made)
     return made
+
+
+def _choices(settings: Settings) -> tuple[tuple[str, str], ...]:
+    """Which file each name in the paths of shaders stands for."""
+    has_mean = settings.multisampling and not settings.sample_shading
+    return (
+        ("method", settings.method),
+        ("storage", get_storage(settings.storage).name),
+        ("shading", settings.shading),
+        ("sum_format", settings.sum_format),
+        ("samples", "mean" if has_mean else "each"),
+        ("sides", "alike" if settings.as_printed else "told_apart"),
+        ("rest_opacity", "printed" if settings.as_printed else "surfaces"),
+    )
 
 
 def _with_parts(planning: Planning, p: Pass, present: Iterable[Callable[[Planning, Pass], Iterable[Part]]]) -> Pass:

@@ -67,18 +67,11 @@ def fit_planes(
     if not len(bent):
         return {}
     changed = {name: arrays[name].copy() for name in ("positions", "rotations", *CLIP_FIELDS) if name in arrays}
-    places, normals = _places_and_normals(arrays, bent, grid.spacing)
-    spans = [(axis, slice(*np.searchsorted(bent, (rows.start, rows.stop)).tolist())) for axis, rows in images]
-    spans = [(axis, rows) for axis, rows in spans if rows.stop > rows.start]
     is_cut = np.zeros(len(arrays["positions"]), bool)
     for name in CLIP_FIELDS:
         if name in arrays:
             is_cut |= arrays[name][:, 1] > 0
-    seen, done = [], 0
-    for image in in_order(partial(ImageSamples, places, normals, *span) for span in spans):
-        seen.append(image)
-        done += len(image)
-        report(_FINDING * done / len(bent))
+    seen = _seen(arrays, images, bent, grid.spacing, report)
 
     def fit(image: ImageSamples, part: np.ndarray) -> int:
         """Fit the planes of these samples, in place; returns how many there are."""
@@ -112,6 +105,18 @@ def fit_planes(
         done += count
         report(_FINDING + (1 - _FINDING) * done / total)
     return changed
+
+
+def _seen(arrays, images, bent: np.ndarray, spacing: float, report: Callable[[float], None]) -> list[ImageSamples]:
+    """The samples with these numbers in each image that has any. arrays, images, report: as in `fit_planes`."""
+    places, normals = _places_and_normals(arrays, bent, spacing)
+    spans = [(axis, slice(*np.searchsorted(bent, (rows.start, rows.stop)).tolist())) for axis, rows in images]
+    seen, done = [], 0
+    for image in in_order(partial(ImageSamples, places, normals, *s) for s in spans if s[1].stop > s[1].start):
+        seen.append(image)
+        done += len(image)
+        report(_FINDING * done / len(bent))
+    return seen
 
 
 def _places_and_normals(arrays: dict[str, np.ndarray], rows: np.ndarray, spacing: float):
