@@ -185,7 +185,7 @@ class LiveMeshes:
 
         override: the material override of this view layer.
         """
-        key = *mesh_key(evaluated), override and override.session_uid, place.form.split_group
+        key = *mesh_key(evaluated), override and override.original.session_uid, place.form.split_group
         if key not in self._frame:
             live = self._kept.setdefault(self._lasting_key(evaluated, place.form.split_group), _LiveMesh())
             live.places, live.owner = [], owner.name

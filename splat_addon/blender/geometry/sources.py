@@ -136,7 +136,8 @@ def asked_of(entry: bpy.types.DepsgraphObjectInstance) -> tuple[bpy.types.Object
 
 def mesh_key(evaluated: bpy.types.Object) -> tuple:
     """A key that is equal for entries with the same evaluated mesh and materials, within one evaluation."""
-    slots = (slot.material.session_uid if slot.material else 0 for slot in evaluated.material_slots)
+    # an evaluated material has no session_uid of its own
+    slots = (slot.material.original.session_uid if slot.material else 0 for slot in evaluated.material_slots)
     return evaluated.data.session_uid, *slots
 
 

@@ -64,6 +64,22 @@ def look(scene, add_camera):
     return scene
 
 
+@pytest.mark.parametrize("meshes", ["POLYGONS", "SURFELS"])
+def test_objects_that_share_a_mesh_have_materials_of_their_own(scene, add_camera, add_square, picture, meshes):
+    """An object's own slot may hold another material than its mesh's, as on linked copies of furniture."""
+    scene.surfel_splatting.render_meshes = meshes
+    add_camera()
+    one = add_square()
+    one.data.materials.append(principled(Base_Color=(1, 0, 0, 1)))
+    other = one.copy()
+    scene.collection.objects.link(other)
+    one.location, other.location = (-1.5, -0.5, 0), (0.5, -0.5, 0)
+    other.material_slots[0].link = "OBJECT"
+    other.material_slots[0].material = principled(Base_Color=(0, 0, 1, 1))
+    drawn = picture()
+    assert np.allclose(drawn[16, 12], (1, 0, 0, 1), atol=1e-3) and np.allclose(drawn[16, 20], (0, 0, 1, 1), atol=1e-3)
+
+
 def test_a_lit_mesh_is_as_bright_as_in_cycles(look, picture, switch_to_cycles):
     bpy.ops.mesh.primitive_uv_sphere_add(radius=1, location=(-1, 0, 0.4))
     bpy.ops.object.shade_smooth()

@@ -37,6 +37,22 @@ def test_the_material_override_paints_everything(things, scene, picture, meshes)
     assert np.array_equal(picture(), before)
 
 
+def test_another_override_takes_the_place_of_the_first_in_a_view(add_square):
+    """A view reads a mesh again only if its key is another one."""
+    from splat_addon.blender.export.live_meshes import LiveMeshes
+    from splat_addon.blender.export.scene import export_scene
+    from splat_addon.blender.export.sliced_store import SlicedStore
+
+    add_square()
+    view_layer, live, colors = bpy.context.view_layer, LiveMeshes(), []
+    for color in ((1, 0, 0, 1), (0, 0, 1, 1)):
+        view_layer.material_override = material(color, f"paint {color}")
+        live.begin_frame(set())
+        scene, _ = export_scene(bpy.context.evaluated_depsgraph_get(), SlicedStore(), live)
+        colors.append(tuple(scene.polygons[0].polygons.colors[0]))
+    assert colors == [(1, 0, 0, 1), (0, 0, 1, 1)]
+
+
 def test_a_textured_override_gives_surfels_its_plain_colour_and_says_so(things, picture, said):
     made = material((0, 0, 1, 1), "textured")
     node = made.node_tree.nodes.new("ShaderNodeTexImage")

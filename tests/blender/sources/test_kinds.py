@@ -114,6 +114,35 @@ def test_a_collection_instance_with_a_text_and_a_mirrored_mesh(assert_covers, se
     assert_covers()
 
 
+def test_objects_that_share_a_mesh_keep_materials_of_their_own(select, convert, surfels_of):
+    """An object's own slot may hold another material than its mesh's, as on linked copies of furniture."""
+    hidden, looks = bpy.data.collections.new("hidden"), [bpy.data.materials.new(name) for name in ("mesh's", "own")]
+    for look, color in zip(looks, ((1, 0, 0, 1), (0, 0, 1, 1)), strict=True):
+        if bpy.app.version < (5, 0, 0):
+            look.use_nodes = True
+        look.node_tree.nodes["Principled BSDF"].inputs["Base Color"].default_value = color
+    bpy.ops.mesh.primitive_cube_add()
+    one = bpy.context.object
+    one.data.materials.append(looks[0])
+    other = one.copy()
+    other.location.x = 3
+    for shown in (one, other):
+        hidden.objects.link(shown)
+    bpy.context.scene.collection.objects.unlink(one)
+    other.material_slots[0].link = "OBJECT"
+    other.material_slots[0].material = looks[1]
+    instancer = bpy.data.objects.new("instancer", None)
+    instancer.instance_type, instancer.instance_collection = "COLLECTION", hidden
+    bpy.context.scene.collection.objects.link(instancer)
+    select(instancer)
+    [made] = convert(resolution=8)
+    assert {material.name for material in made.data.materials} == {"mesh's", "own"}
+    surfels = surfels_of(made)
+    is_other = surfels.positions[:, 0] + surfels.origin[0] > 1.5
+    assert 0 < is_other.sum() < len(surfels)
+    assert (surfels.colors[is_other, 2] > 0.9).all() and (surfels.colors[~is_other, 0] > 0.9).all()
+
+
 def test_instances_on_vertices(assert_covers, add_mesh, select):
     points = add_mesh("points", [(0, 0, 0), (3, 0, 0), (0, 3, 0)], [])
     bpy.ops.mesh.primitive_uv_sphere_add(radius=0.4)
