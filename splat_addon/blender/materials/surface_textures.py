@@ -91,9 +91,10 @@ class TextureStore:
             found = None
         if found is None:
             return None
-        kept = self._kept.get(material.session_uid)
+        key = material.original.session_uid  # an evaluated material has none of its own
+        kept = self._kept.get(key)
         if kept is None or not _same(kept, found):
-            self._kept[material.session_uid] = kept = found
+            self._kept[key] = kept = found
         return kept
 
     def _read(self, material: bpy.types.Material | None) -> SurfaceTexture | None:

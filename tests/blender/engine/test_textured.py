@@ -267,3 +267,20 @@ def test_a_conversion_without_images_says_that_nothing_is_texture_mapped(add_squ
     (made,) = convert(resolution=4, texture_mapped=True)
     assert "No base colour is one image times a constant, so no surfel is texture-mapped" in said()
     assert "uv" not in made.data.attributes
+
+
+def test_each_of_several_materials_keeps_its_texture_from_frame_to_frame(add_square, image):
+    """A texture that is the same object stays on the device. In a render, materials are evaluated."""
+    from splat_addon.blender.export.scene import Notes
+    from splat_addon.blender.materials.surface_textures import TextureStore
+
+    for tint in (None, (0.5, 0.5, 0.5)):
+        add_square().data.materials.append(textured_material(image, tint=tint))
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    evaluated = [each.evaluated_get(depsgraph).material_slots[0].material for each in bpy.context.scene.objects]
+    store, frames = TextureStore(), []
+    for _ in range(2):
+        store.begin_frame(is_edited=False, is_told=True)
+        frames.append([store.get(material, Notes()) for material in evaluated])
+    assert frames[0][0] is not frames[0][1]
+    assert all(first is second for first, second in zip(*frames, strict=True))
