@@ -22,6 +22,12 @@ def hide_source(source: bpy.types.Object) -> None:
     record.is_hidden_source = source.hide_render = True
 
 
+def is_disabled_in_renders(source: bpy.types.Object) -> bool:
+    """Whether renders leave an object out, apart from a conversion that hid it."""
+    record = record_of(source)
+    return record.was_disabled_in_renders if record.is_hidden_source else source.hide_render
+
+
 def bring_back() -> None:
     """Show all hidden sources that have no surfels left; those that were disabled in renders before stay so."""
     hidden = [owner for owner in bpy.data.objects if record_of(owner).is_hidden_source]

@@ -9,21 +9,22 @@ from mathutils import Matrix
 
 from ..geometry.mesh_extraction import is_unread
 from ..ids import OBJECT_SETTINGS
+from .animation import animated_paths
 from .as_rendered import as_rendered, differing_levels
-from .bring_back import hide_source
+from .bring_back import hide_source, is_disabled_in_renders
 from .following import follow, follow_visibility
 from .shape_following import follow_shape, is_bent
 from .source_record import keep_record, record_of
 
 
 def tie(conversion, made: bpy.types.Object, kind: str, settings, follows: bool, hides: bool) -> list[str]:
-    """Tie an object to its sources.
+    """Tie an object to its sources. If renders show none of them, such as the cutter of a Boolean, they do not show it.
 
     conversion: placed as `made`.
     kind, settings: of the record.
     follows: whether it follows its source.
     hides: whether its sources are hidden for as long as it exists.
-    Returns a sentence for each respect in which it does not follow.
+    Returns a sentence for each respect in which it does not follow or is not shown.
     """
     notes = []
     keep_record(made, conversion.sources, kind, settings)
@@ -33,12 +34,19 @@ def tie(conversion, made: bpy.types.Object, kind: str, settings, follows: bool, 
         unit = float(np.median(conversion.surfels.scales)) * min(map(abs, matrix_world.to_scale()))
         follow(made, conversion.sources[0], matrix_world, unit)
         notes = [*follow_visibility(made, conversion.sources), *tie_shape(conversion, made, kind)]
+    if all(map(_is_never_rendered, conversion.sources)):
+        made.hide_render, made.display_type = True, conversion.sources[0].display_type
+        notes.append(f"{made.name!r} is disabled in renders, as its source is")
     for source in conversion.sources:
         # an earlier choice about how to render the source must not show it beside its surfels
         getattr(source, OBJECT_SETTINGS).render_as = "SCENE"
         if hides:
             hide_source(source)
     return notes
+
+
+def _is_never_rendered(source: bpy.types.Object) -> bool:
+    return is_disabled_in_renders(source) and "hide_render" not in animated_paths(source)
 
 
 def keep_unread(made: bpy.types.Object, conversion) -> None:

@@ -133,6 +133,10 @@ def test_a_frozen_copy_is_not_hidden(square, convert):
     (made,) = convert(resolution=8, follow=False)
     bpy.context.scene.frame_set(1)
     assert not made.hide_render
+    square.hide_viewport = False  # it can be converted while renders do not show it
+    square.select_set(True)
+    (second,) = set(convert(resolution=8, follow=False)) - {made}
+    assert not second.hide_render
 
 
 def test_joined_surfels_are_not_hidden_with_one_of_their_sources(square, add_square, convert, capfd):
@@ -187,6 +191,33 @@ def test_a_source_that_was_disabled_in_renders_stays_so(square, convert):
         bpy.data.objects.remove(each)
     bpy.context.view_layer.update()
     assert not square.hide_get() and square.hide_render
+
+
+@pytest.mark.parametrize("source", ["KEEP", "HIDE"])
+def test_surfels_of_a_source_that_renders_leave_out_are_left_out(square, convert, source, capfd):
+    """Such as the cutter of a Boolean, which would fill the hole that it cuts."""
+    square.hide_render, square.display_type = True, "WIRE"
+    (first,) = convert(resolution=8, source=source)
+    square.hide_set(False)
+    square.select_set(True)
+    (second,) = set(convert(resolution=8, source=source)) - {first}
+    assert all(made.hide_render and made.display_type == "WIRE" for made in (first, second))
+    assert "'Square surfels' is disabled in renders, as its source is" in capfd.readouterr().out
+
+
+def test_surfels_of_a_source_that_only_a_conversion_hid_are_rendered(square, convert):
+    convert(resolution=8, source="HIDE")
+    square.hide_set(False)
+    square.select_set(True)
+    assert not any(made.hide_render for made in convert(resolution=8, source="HIDE"))
+
+
+def test_joined_surfels_are_rendered_if_one_of_their_sources_is(square, add_square, convert):
+    square.hide_render = True
+    add_square("other")
+    square.select_set(True)
+    (made,) = convert(resolution=8, join=True)
+    assert not made.hide_render
 
 
 def test_surfels_that_are_swapped_for_another_object_bring_back_their_source(square, convert):
