@@ -7,9 +7,10 @@ from unittest.mock import MagicMock
 import bpy
 import pytest
 
+from splat_addon.blender.conversion import prediction
 from splat_addon.blender.ids import SURFELS_FROM_MESH, SURFELS_FROM_POINTS
 from splat_addon.blender.ui.points_panel import VIEW3D_PT_surfels_from_points
-from splat_addon.blender.ui.sidebar import VIEW3D_PT_surfels_from_mesh
+from splat_addon.blender.ui.sidebar import VIEW3D_PT_surfels_from_mesh, merged_reasons
 
 PANELS = (VIEW3D_PT_surfels_from_mesh, VIEW3D_PT_surfels_from_points)
 
@@ -55,6 +56,34 @@ ADVICE = "Select objects with surfaces, in Object Mode"
 
 def test_nothing_selected_is_said(drawn):
     assert drawn().texts == [ADVICE]
+
+
+def test_reasons_that_differ_in_how_many_times_only_are_one_line():
+    seen = "0.75 pixels where {the} camera is nearest"
+    thin = [f"{times} times finer, as it is thin, than {seen}" for times in ("1.4", "2.1", "1.1", "10.0")]
+    many = [
+        f"at most 4 surfels, {a} times coarser than {b} times finer than" for a, b in (("3.0", "2.0"), ("1.5", "2.0"))
+    ]
+    assert merged_reasons([seen, *thin, seen, *many]) == [
+        seen,
+        f"1.1 to 10.0 times finer, as it is thin, than {seen}",
+        "at most 4 surfels, 1.5 to 3.0 times coarser than 2.0 times finer than",
+    ]
+    assert merged_reasons(thin[:1]) == thin[:1]
+
+
+def test_the_panel_merges_reasons(add_mesh, camera, drawn):
+    """Three wires of different widths give one line about being thin, beside that of the count."""
+    wires = []
+    for width in (0.004, 0.006, 0.01):
+        corners = [(x * width, y * width, 4 * z) for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+        wires.append(add_mesh("wire", corners, [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6)]))
+    for wire in wires:
+        wire.select_set(True)
+    drawn()
+    prediction._measure_wanted()
+    thin = " ".join(drawn().texts)
+    assert thin.count("as it is thin") == 1 and " to " in thin, thin
 
 
 def test_a_mesh_can_be_converted(cube, drawn):

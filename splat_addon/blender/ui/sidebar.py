@@ -3,6 +3,10 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterable
+from itertools import chain, zip_longest
+
 import bpy
 
 from ...sampling import UNKNOWN_FLAT_EXTENTS
@@ -108,7 +112,26 @@ def prediction(context: bpy.types.Context, sources: list[bpy.types.Object], aske
     text = prediction_text([extent.predict(f) for extent, (f, _) in zip(extents, found, strict=True)])
     if asked.tolerance or any(extent.flat is UNKNOWN_FLAT_EXTENTS for extent in extents):
         text = said("{count}, fewer where flat", count=text)
-    return "\n".join([text, *dict.fromkeys(reason for _, reason in found if reason)])
+    return "\n".join([text, *merged_reasons(reason for _, reason in found if reason)])
+
+
+#: How many times finer or coarser, in a reason for an automatic density.
+_TIMES = re.compile(r"\d+\.\d(?= times )")
+
+
+def merged_reasons(reasons: Iterable[str]) -> list[str]:
+    """The different reasons, those that differ only in how many times finer or coarser as one with the range. Many
+    thin objects would otherwise push the button out of the panel."""
+    alike = {}
+    for reason in reasons:
+        alike.setdefault(tuple(_TIMES.split(reason)), []).append([float(times) for times in _TIMES.findall(reason)])
+    merged = ((texts, map(_range, zip(*numbers, strict=True))) for texts, numbers in alike.items())
+    return ["".join(chain(*zip_longest(texts, ranges, fillvalue=""))) for texts, ranges in merged]
+
+
+def _range(numbers: tuple[float, ...]) -> str:
+    low, high = (f"{bound(numbers):.1f}" for bound in (min, max))
+    return low if low == high else f"{low} to {high}"
 
 
 def _density_of(sources, extent: Extent, asked: Choices, depsgraph) -> tuple[dict[str, float], str]:
