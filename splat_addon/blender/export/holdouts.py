@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from weakref import WeakKeyDictionary
 
@@ -18,17 +19,19 @@ from ..materials.surface_shaders import is_holdout
 _PARTS: WeakKeyDictionary[Shape, tuple[list[int], Shape, Shape]] = WeakKeyDictionary()
 
 
-def with_holes(
-    instance: Instance | PolygonInstance, slots: list[bpy.types.Material | None]
-) -> list[Instance | PolygonInstance]:
-    """The instance, in two if only some of its materials are holdouts. slots: the materials, as many as its own."""
-    held = [k for k, material in enumerate(slots) if material is not None and is_holdout(material)]
+def held_slots(slots: Sequence[bpy.types.Material | None]) -> list[int]:
+    """The slots whose material is a Holdout."""
+    return [k for k, material in enumerate(slots) if material is not None and is_holdout(material)]
+
+
+def with_holes(instance: Instance | PolygonInstance, held: list[int]) -> list[Instance | PolygonInstance]:
+    """The instance, in two if only some of its materials are holdouts. held: result of `held_slots`."""
     if not held or instance.is_holdout:
         return [instance]
-    if len(held) == len(slots):
+    if len(held) == len(instance.materials):
         return [replace(instance, is_holdout=True)]
     if instance.shape not in _PARTS or _PARTS[instance.shape][0] != held:
-        are_held = np.isin(np.minimum(instance.shape.materials, len(slots) - 1), held)
+        are_held = np.isin(np.minimum(instance.shape.materials, len(instance.materials) - 1), held)
         _PARTS[instance.shape] = held, *(instance.shape.take(np.flatnonzero(some)) for some in (~are_held, are_held))
     _, seen, holes = _PARTS[instance.shape]
     parts = replace(instance, shape=seen), replace(instance, shape=holes, is_holdout=True)

@@ -46,7 +46,7 @@ from ..geometry.split_meshes import MeshParts, parts_by_group
 from ..materials.surface_textures import kept_normal_maps, kept_textures
 from ..mesh_sampling_settings import Form
 from . import passed_over
-from .holdouts import with_holes
+from .holdouts import held_slots, with_holes
 from .object_detail import finer
 from .shading import shading_material
 
@@ -80,13 +80,15 @@ class _LiveMesh:
     """One evaluated mesh, with all its places. said: sentences about its materials and its object. bends: whether its
     object has shape keys or modifiers that deform it.
 
-    key: result of `mesh_key` for the evaluation that was read. shown: a sampling, and the surfels drawn from it.
+    key: result of `mesh_key` for the evaluation that was read. held: result of `held_slots`. shown: a sampling, and the
+        surfels drawn from it.
     """
 
     key: tuple = ()
     topology: Topology | None = None
     content: ExtractedMesh | None = None
     materials: tuple[Material, ...] = ()
+    held: list[int] = field(default_factory=list)
     textures: tuple[SurfaceTexture | None, ...] = ()
     normal_maps: tuple[NormalTexture | None, ...] = ()
     texture_mapped: bool = False
@@ -230,7 +232,7 @@ class LiveMeshes:
             for place in live.sampled_at
             for part in with_holes(
                 Instance(live.shown[1], textures=textures, **place.of_instance(live.materials, live.spacing)),
-                live.content.materials,
+                live.held,
             )
         ]
 
@@ -249,7 +251,7 @@ class LiveMeshes:
             for place in live.drawn_at
             for part in with_holes(
                 PolygonInstance(shape, **looked_up, **place.of_instance(live.materials, live.spacing)),
-                live.content.materials,
+                live.held,
             )
         ]
 
@@ -278,6 +280,7 @@ class LiveMeshes:
             live.parts = parts_by_group(evaluated, mesh, live.content.triangles, group) if group else None
             live.bends = evaluated.original.is_deform_modified(bpy.context.scene, "RENDER")
             live.materials = tuple(shading_material(material, notes, OPTIONAL_LAYOUT) for material in slots)
+            live.held = held_slots(slots)
 
     def _sampled(
         self, live: _LiveMesh, depsgraph: bpy.types.Depsgraph, density: dict[str, float], texture_mapped: bool

@@ -27,7 +27,7 @@ from ..materials.material_override import Overridden, override_of
 from ..materials.surface_textures import TextureStore
 from ..mesh_sampling_settings import Form, are_meshes_texture_mapped, density_of_meshes, form_of
 from . import passed_over
-from .holdouts import with_holes
+from .holdouts import held_slots, with_holes
 from .light_linking import LightSets
 from .live_meshes import LiveMeshes, Place
 from .object_detail import detail_of
@@ -298,13 +298,13 @@ def _instances(
     if override is not None:
         materials = (shading_material(override, notes),)
         painted = store.overridden.get(surfels, override, notes)
-        return with_holes(Instance(painted, matrix_world, materials, **fields), [override])
+        return with_holes(Instance(painted, matrix_world, materials, **fields), held_slots([override]))
     own = surfels.arrays().keys()
     # a point cloud made by modifiers has no slots of its own
     slots = [slot.material for slot in object_.original.evaluated_get(depsgraph).material_slots]
     materials = tuple(shading_material(material, notes, own) for material in slots)
     textures = tuple(store.textures.get(material, notes) for material in slots) if surfels.has_uvs else ()
-    return with_holes(Instance(surfels, matrix_world, materials, textures=textures, **fields), slots)
+    return with_holes(Instance(surfels, matrix_world, materials, textures=textures, **fields), held_slots(slots))
 
 
 def _stream_of(owner: bpy.types.Object, store: SurfelStore, notes: Notes) -> Stream | None:

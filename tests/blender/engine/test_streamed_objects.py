@@ -84,5 +84,24 @@ def test_modifiers_are_not_followed_and_a_note_says_so(stored, picture):
     assert any("do not follow Wave" in note for note in final_render.last_frame_stats["notes"])
 
 
+@pytest.mark.parametrize("is_whole", [True, False])
+def test_it_is_held_out_as_a_whole_or_a_note_says_that_it_is_not(stored, picture, is_whole):
+    """Both slots are in use; both or the second are a Holdout."""
+    numbers = np.arange(6400, dtype=np.int32) % 2
+    stored.data.attributes["material"].data.foreach_set("value", numbers)
+    plain, hole = (bpy.data.materials.new(name) for name in ("plain", "hole"))
+    if bpy.app.version < (5, 0, 0):
+        plain.use_nodes = hole.use_nodes = True
+    tree = hole.node_tree
+    tree.links.new(tree.nodes.new("ShaderNodeHoldout").outputs[0], tree.get_output_node("ALL").inputs["Surface"])
+    for material in (hole if is_whole else plain, hole):
+        stored.data.materials.append(material)
+    bpy.ops.object.surfels_to_file()
+    shown = picture()
+    assert final_render.last_frame_stats["splats"] == 6400 and shown[16, 16, 3] == (0 if is_whole else 1)
+    said = "sheet cuts no hole, as its surfels come from a file and only some of its materials are a Holdout"
+    assert final_render.last_frame_stats["notes"] == ([] if is_whole else [said])
+
+
 def test_the_budget_is_the_preference():
     assert preferences.stream_bytes() == 512_000_000
