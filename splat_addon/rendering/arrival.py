@@ -4,7 +4,7 @@ until programs are compiled there is the last picture, or a draft."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from dataclasses import replace
 from weakref import WeakKeyDictionary, WeakSet
 
@@ -16,7 +16,7 @@ from .scene import Scene
 from .scene.camera import Camera
 from .settings import Settings
 from .stand_in import STAND_IN, stand_in
-from .upload.loading import Loading, NotYet, ProgramsNotYet
+from .upload.loading import Loading, NotYet
 
 #: Least surfels that stand for a set, and for one of few sets.
 _LEAST, _LEAST_OF_FEW = 1 << 6, 1 << 11
@@ -34,7 +34,7 @@ class Arrival:
         self.refinement = refinement
         self.loading = resources.loading = loading or Loading(resources.device)
         self.is_compiling = False
-        self._draft = Draft(refinement.renderer, self._with_few)
+        self._draft = Draft(refinement.renderer, self.loading, self._with_few)
         self._late: WeakSet[Surfels] = WeakSet()
         self._stand_ins: WeakKeyDictionary[Surfels, Surfels] = WeakKeyDictionary()
         self._last: tuple[Scene, Camera, Settings, Shown] | None = None
@@ -78,28 +78,31 @@ class Arrival:
         before = self._last if self._last and self._last[0].shown else None
         tries = not self.is_compiling or self._draft.is_there or before is not None
         if tries:
-            try:
-                yield from self._noted(shown, camera, settings, hurries)
-            except ProgramsNotYet:
-                self.is_compiling = True
-            else:
-                if self.is_compiling:
-                    self._forget_draft()
-                self.is_compiling = False
+            self._draft.begin_again()
+            is_seen = yield from self._noted(shown, camera, settings, hurries)
+            if is_seen and self.is_compiling:
+                self._forget_draft()
+            self.is_compiling = not is_seen
+            if is_seen:
                 return
         if before and before[1].size == camera.size:
             yield before[-1]
         elif self._draft.is_there or not tries:
+            if not self._draft.is_of(scene, camera):
+                # it is drawn with the same resources
+                self.refinement.begin_again()
             yield from self._draft.draw(scene, camera, settings)
 
-    def _noted(self, scene: Scene, camera: Camera, settings: Settings, hurries: bool) -> Iterator[Shown]:
-        """What the refinement draws, and what it was if that is a single texture, which then stays as it is."""
+    def _noted(self, scene: Scene, camera: Camera, settings: Settings, hurries: bool) -> Generator[Shown, None, bool]:
+        """What the refinement draws, and what it was if that is a single texture, which then stays as it is. Returns
+        whether it is anything."""
         parts = 0
         for part in self.refinement.draw(scene, camera, settings, hurries=hurries):
             parts, self._last = parts + 1, None
             yield part
         if parts == 1:
             self._last = scene, camera, settings, part
+        return parts > 0
 
     def _is_same(self, scene: Scene, camera: Camera, settings: Settings) -> bool:
         """Whether the last picture was of the same stand-ins."""

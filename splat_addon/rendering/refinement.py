@@ -26,6 +26,7 @@ class Refinement:
         view costs no more than without refinement.
     pace: how coarse the picture is while only the camera moves; at rest it is as the settings say. With a rate, a
         picture that takes longer is drawn in slices, one a call, and the one before stays until it is complete.
+        While its programs are compiled, a call ends without any.
     """
 
     def __init__(self, renderer: Renderer, pace: Pace | None = None):
@@ -49,8 +50,12 @@ class Refinement:
         try:
             yield from self._parts(scene, camera, settings, hurries)
         except Exception:
-            self._of, self._refines, self._begun = None, False, None
+            self.begin_again()
             raise
+
+    def begin_again(self) -> None:
+        """Give up the picture that was begun. The next call begins another, as for a new scene."""
+        self._of, self._refines, self._begun = None, False, None
 
     def _parts(self, scene: Scene, camera: Camera, settings: Settings, hurries: bool) -> Iterator[Shown]:
         self._is_behind = not hurries and self._must_complete(scene, camera, settings)
@@ -94,13 +99,21 @@ class Refinement:
         return self._of[0] is scene and self._of[1].size == camera.size and self._of[2] == settings
 
     def _slice(self) -> Iterator[Shown]:
-        """Go on with the picture that was begun. It is shown once it is complete, and the last one until then."""
-        end, device = self.pace.slice_end(), self.renderer.device
+        """Go on with the picture that was begun. It is shown once it is complete, and the last one until then; nothing
+        if programs are compiled."""
+        end, device, loading = self.pace.slice_end(), self.renderer.device, self.renderer.resources.loading
         self.pace.go_on()
+        is_seen = False
+        if loading:
+            loading.pauses = False
         for part in self._begun.parts:
             if not isinstance(part, Pause):
-                self._last = None
+                self._last, is_seen = None, True
                 yield part
+            elif loading and loading.pauses and not is_seen:
+                device.restore()
+                self.pace.pause()
+                return
             elif self._last is not None:
                 if part.target is not None and end is not None:
                     device.finish(part.target)
@@ -155,7 +168,7 @@ class Refinement:
     def _first(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[Shown | Pause]:
         """The first picture of a scene."""
         self._drawn = self._read(scene, camera, settings)
-        return self.renderer.draw(self._drawn, camera, settings)
+        return self.renderer.draw(self._drawn, camera, settings, in_slices=True)
 
     def _moving(self, scene: Scene, camera: Camera, settings: Settings) -> Iterator[Shown | Pause]:
         """The picture of a camera that moves, as coarse as its pace requires."""

@@ -247,8 +247,8 @@ def test_a_draft_is_there_long_before_the_programs_of_the_picture(small_steps, o
 
 def test_the_last_picture_stays_while_programs_of_the_next_are_compiled(small_steps, on_device):
     scene, camera = torus(4000)
-    turned = replace(camera, matrix_world=look_at((0, 0, 12), (0, 0, 0)))
-    flat = replace(SETTINGS, shading="flat", method="ewa")
+    turned = replace(camera, matrix_world=look_at((4, 3, 6), (0, 0, 0)))
+    flat = replace(SETTINGS, shading="flat", method="ewa", supersampling=2)
 
     def draw(device):
         view, pictures = begun(device, Clock(0.0))[0], []
@@ -326,6 +326,26 @@ def test_a_draft_follows_the_camera_and_is_drawn_once_for_each(small_steps, on_d
     is_compiling, parts, again, moved, drafts = on_device(draw)
     assert is_compiling and len(moved) == 1 and again[0] is parts[0]
     assert len(drafts) == 1 and drafts[0][1] is turned
+
+
+def test_pictures_go_on_where_they_paused_to_compile_a_program(small_steps, on_device, monkeypatch):
+    """The first picture begins again only after the draft, which is drawn with the same resources."""
+    scene, camera = torus(4000)
+
+    def draw(device):
+        view, begun_with, calls = begun(device, Clock(0.06))[0], [], 0
+        draw_all = view.refinement.renderer.draw
+        monkeypatch.setattr(
+            view.refinement.renderer, "draw", lambda *of, **how: (begun_with.append(of[2]), draw_all(*of, **how))[1]
+        )
+        while view.is_compiling or not calls:
+            last = [shown_texels(device, part) for part in view.draw(scene, camera, SETTINGS)]
+            calls += 1
+        return begun_with, calls, last, Renderer(device).render(scene, camera, SETTINGS).color
+
+    begun_with, calls, (last,), whole = on_device(draw)
+    assert [settings == SETTINGS for settings in begun_with] == [True, False, True] and calls > 6
+    np.testing.assert_array_equal(last, whole)
 
 
 def test_stand_ins_are_drawn_once_while_slices_are_written(small_steps, on_device, monkeypatch):

@@ -37,10 +37,6 @@ class NotYet(Exception):
         self.surfels = set(surfels)
 
 
-class ProgramsNotYet(Exception):
-    """Compiling programs has taken this picture's time; the next one goes on."""
-
-
 class Packed(NamedTuple):
     """One kind of data of a set. texels: (h, w, channels) float32 and the format of each texture. value: what is kept,
     made of the textures."""
@@ -112,7 +108,8 @@ class Loading:
 
     run: starts a job in the background. bytes_written: by the last picture. is_in_background: whether large sets are
     made there; otherwise pictures wait for them. exempt: sets that are made at once in any case. compiles_in_slices:
-    whether a picture ends where compiling programs has taken its time.
+    whether a picture pauses where compiling programs has taken its time. pauses: whether it is to pause now; who goes
+    on with it sets this to False.
     """
 
     def __init__(self, device: Device, run=in_background, clock: Callable[[], float] = perf_counter):
@@ -123,7 +120,7 @@ class Loading:
         self.bytes_written = 0
         self.is_in_background = self.compiles_in_slices = True
         self._programs: set[PipelineDescription] = set()
-        self._compiled_until = 0.0
+        self._compiled_until, self.pauses = 0.0, False
 
     def __del__(self):
         self.clear()
@@ -138,13 +135,11 @@ class Loading:
         return True
 
     def program(self, description: PipelineDescription) -> Pipeline:
-        """The device's pipeline. If it is new and the time of this picture is over, ProgramsNotYet is raised after it
-        was compiled."""
+        """The device's pipeline. If it is new and the time of this picture is over, the picture is to pause."""
         program = self._device.pipeline(description)
         if self.compiles_in_slices and description not in self._programs:
             self._programs.add(description)
-            if self._clock() > self._compiled_until:
-                raise ProgramsNotYet
+            self.pauses |= self._clock() > self._compiled_until
         return program
 
     def request(self, owner: Surfels, kind: str, made_from: tuple, job: Callable[[JobShare], Made]) -> None:

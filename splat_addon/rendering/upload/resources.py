@@ -234,7 +234,7 @@ class Resources:
         self.made_from = {key: value for key, value in self.made_from.items() if key in wanted}
 
     def pipeline(self, description: PipelineDescription) -> Pipeline:
-        """The device's pipeline, which all renderers share. Raises as `Loading.program`."""
+        """The device's pipeline, which all renderers share."""
         return (self.loading.program if self.loading else self.device.pipeline)(description)
 
     def release(self) -> None:
