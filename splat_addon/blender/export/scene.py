@@ -95,8 +95,8 @@ class SurfelStore:
     def get(self, points: Points, key: int, name: str, is_solid: bool = False) -> tuple[Surfels | None, int, int]:
         """The result of `attributes.read_stored`; read once per mesh and frame. There may be no surfels yet.
 
-        key: session_uid of the mesh, or of the mesh that the points were made beside. name: identifies it in the next
-            evaluation.
+        key: session_uid of the mesh or point cloud, or of the mesh that the points were made beside.
+        name: identifies it in the next evaluation.
         """
         if key not in self._current:
             surfels, skipped, strayed = read_stored(points, self._followed, name, is_solid)
@@ -165,7 +165,9 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
                     made.add(object_.original)
                 if "surfels" in what:
                     with _attributes_of(object_) as points:
-                        kept = store.get(points, points.session_uid, points.name_full)
+                        # an evaluated point cloud that no modifier made has no session_uid of its own
+                        key = points.session_uid or points.original.session_uid
+                        kept = store.get(points, key, points.name_full)
                     surfels += _instances(object_, kept, depsgraph, matrix, fields, store, notes, override)
                 if "shown" in what:
                     source, owner = entry.instance_object or object_, object_.original

@@ -82,6 +82,16 @@ def test_cycles_shows_the_surfels_in_their_colours(discs, picture, switch_to_cyc
     assert np.corrcoef(seen[row, column, :3], own)[0, 1] > 0.9
 
 
+def test_each_of_several_point_clouds_keeps_its_own_surfels(scene, add_camera, add_sheet, picture):
+    """Object > Convert makes point clouds of surfel objects; an evaluated one has no number of its own."""
+    add_camera()
+    for x, color in ((-1.5, (1, 0, 0, 1)), (1.5, (0, 0, 1, 1))):
+        add_sheet(side=1, colors=color, is_shown=False).location.x = x
+        bpy.ops.object.convert(target="POINTCLOUD")
+    drawn = picture()
+    assert np.allclose(drawn[16, 11], (1, 0, 0, 1), atol=1e-3) and np.allclose(drawn[16, 20], (0, 0, 1, 1), atol=1e-3)
+
+
 def test_modifiers_added_later_come_before_it(discs):
     made = discs(is_shown=True)
     made.modifiers.new("array", "ARRAY")
