@@ -20,7 +20,7 @@ from .following import at_origin_of_source
 from .gathering import groups
 from .mesh_conversion import Choices, Conversion, bake, place, prepare, sample
 from .source_record import record_of
-from .surfel_objects import refill, select_only
+from .surfel_objects import active_collection, refill, select_only
 
 
 class Batch(ABC):
@@ -151,4 +151,4 @@ class ConversionBatch(Batch):
         super()._finish(conversion, context)
 
     def _place(self, conversion: Conversion, context) -> bpy.types.Object:
-        return place(conversion, context.collection)
+        return place(conversion, active_collection(context))

@@ -300,7 +300,7 @@ def place(conversion: Conversion, fallback: bpy.types.Collection) -> bpy.types.O
     """Add the new object "<name> surfels" over its sources, in the collections of the first, rendered as that, and
     with their materials.
 
-    fallback: the collection to use if all collections of that source belong to a linked library.
+    fallback: the collection to use if no collection of that source takes new objects.
     """
     collections = collections_of(conversion.sources[0], fallback)
     name, matrix_world = f"{conversion.name} surfels", conversion.matrix_world

@@ -20,7 +20,7 @@ from ..geometry.gaussian_clouds import is_gaussian_cloud, read_gaussians
 from ..geometry.points_extraction import ExtractedPoints, extract_points, materials_of, sheared
 from .batch import Batch
 from .placement import without_shear
-from .surfel_objects import add_surfel_object, collections_of, render_like
+from .surfel_objects import active_collection, add_surfel_object, collections_of, render_like
 
 
 class _OfOneObject:
@@ -161,7 +161,7 @@ class PointsBatch(Batch):
 
     def _place(self, conversion: PointsConversion | GaussiansConversion, context) -> bpy.types.Object:
         source = conversion.source
-        collections, name = collections_of(source, context.collection), f"{source.name} surfels"
+        collections, name = collections_of(source, active_collection(context)), f"{source.name} surfels"
         made = add_surfel_object(name, conversion.surfels, conversion.matrix_world, collections, conversion.materials)
         render_like(made, source)
         return made

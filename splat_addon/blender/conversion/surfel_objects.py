@@ -50,8 +50,18 @@ def refill(made: bpy.types.Object, surfels: Surfels, materials: Iterable[bpy.typ
 
 
 def collections_of(source: bpy.types.Object, fallback: bpy.types.Collection) -> list[bpy.types.Collection]:
-    """The collections of `source` that can be changed; `fallback` if all belong to a linked library."""
-    return [collection for collection in source.users_collection if collection.library is None] or [fallback]
+    """The collections of `source` that take new objects; `fallback` if none does."""
+    return [collection for collection in source.users_collection if _takes_objects(collection)] or [fallback]
+
+
+def active_collection(context: bpy.types.Context) -> bpy.types.Collection:
+    """The active collection if it takes new objects, or else the scene's."""
+    return context.collection if _takes_objects(context.collection) else context.scene.collection
+
+
+def _takes_objects(collection: bpy.types.Collection) -> bool:
+    """Whether objects may be added: not to what a library contains, nor to an override of it."""
+    return collection.library is None and collection.override_library is None
 
 
 def render_like(made: bpy.types.Object, source: bpy.types.Object) -> None:

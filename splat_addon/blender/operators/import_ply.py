@@ -21,7 +21,7 @@ from ..conversion.points_settings import (
     keywords,
     viewpoint,
 )
-from ..conversion.surfel_objects import add_object_of, add_surfel_object, select_only
+from ..conversion.surfel_objects import active_collection, add_object_of, add_surfel_object, select_only
 from ..geometry.surfel_files import keep_coarsest, relative_path
 from ..ids import IMPORT_PLY
 from ..spoken import said
@@ -89,7 +89,7 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ModalWriting, ImportHelper, 
                 raise ValueError(f"The file gives no surfels{': ' if notes else ''}{'; '.join(notes)}.")
         except (ValueError, OSError, MemoryError) as error:
             return self._fail(error)
-        made = add_surfel_object(Path(self._name).stem, surfels, Matrix(), [context.collection])
+        made = add_surfel_object(Path(self._name).stem, surfels, Matrix(), [active_collection(context)])
         select_only(context, [made])
         self.report({"INFO"}, said("{name}: {count:,} surfels", name=self._name, count=len(surfels)))
         for note in notes:
@@ -112,7 +112,7 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ModalWriting, ImportHelper, 
         except BaseException:
             bpy.data.meshes.remove(mesh)
             raise
-        made = add_object_of(mesh, Matrix.Translation(origin), [context.collection])
+        made = add_object_of(mesh, Matrix.Translation(origin), [active_collection(context)])
         select_only(context, [made])
         self.report({"INFO"}, said("{name}: {count:,} surfels", name=self._name, count=count))
 

@@ -187,6 +187,19 @@ def test_a_full_disk_is_named(stored, random_surfels):
         bpy.ops.export_scene.surfels_ply(filepath="/dev/full")
 
 
+def test_an_import_beside_an_active_linked_collection_is_in_the_scene(random_surfels, tmp_path):
+    made = bpy.data.collections.new("linked")
+    bpy.data.libraries.write(str(tmp_path / "library.blend"), {made})
+    with bpy.data.libraries.load(str(tmp_path / "library.blend"), link=True) as (_, wanted):
+        wanted.collections = ["linked"]
+    bpy.context.scene.collection.children.link(wanted.collections[0])
+    layer = bpy.context.view_layer.layer_collection
+    bpy.context.view_layer.active_layer_collection = layer.children[0]
+    write_ply(tmp_path / "a.ply", random_surfels(9))
+    bpy.ops.import_scene.surfels_ply(filepath=str(tmp_path / "a.ply"))
+    assert list(bpy.context.object.users_collection) == [bpy.context.scene.collection]
+
+
 def test_undo_takes_an_import_back(random_surfels, tmp_path):
     write_ply(tmp_path / "a.ply", random_surfels(9))
     bpy.ops.ed.undo_push(message="before")

@@ -143,6 +143,45 @@ def test_objects_that_share_a_mesh_keep_materials_of_their_own(select, convert, 
     assert (surfels.colors[is_other, 2] > 0.9).all() and (surfels.colors[~is_other, 0] > 0.9).all()
 
 
+@pytest.fixture
+def in_library(tmp_path, add_square):
+    """A linked collection that contains a square and an empty."""
+    made = bpy.data.collections.new("character")
+    square, rig = add_square(), bpy.data.objects.new("rig", None)
+    for each in (square, rig):
+        made.objects.link(each)
+    square.parent = rig
+    bpy.data.libraries.write(str(tmp_path / "library.blend"), {made})
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    with bpy.data.libraries.load(str(tmp_path / "library.blend"), link=True) as (_, wanted):
+        wanted.collections = ["character"]
+    return wanted.collections[0]
+
+
+def overridden(collection: bpy.types.Collection) -> None:
+    collection.override_hierarchy_create(bpy.context.scene, bpy.context.view_layer)
+
+
+def linked(collection: bpy.types.Collection) -> None:
+    bpy.context.scene.collection.children.link(collection)
+
+
+@pytest.mark.parametrize("is_active", [True, False])
+@pytest.mark.parametrize("use", [overridden, linked])
+def test_surfels_of_what_a_library_contains_join_a_collection_that_takes_them(
+    in_library, use, is_active, select, convert
+):
+    """Neither a linked collection nor an override of it takes objects, even if it is the active one."""
+    use(in_library)
+    layer = bpy.context.view_layer.layer_collection
+    [used] = layer.children
+    bpy.context.view_layer.active_layer_collection = used if is_active else layer
+    [source] = [each for each in used.collection.objects if each.type == "MESH"]
+    select(source)
+    [made] = convert(resolution=8)
+    assert list(made.users_collection) == [bpy.context.scene.collection] and made.parent == source
+
+
 def test_instances_on_vertices(assert_covers, add_mesh, select):
     points = add_mesh("points", [(0, 0, 0), (3, 0, 0), (0, 3, 0)], [])
     bpy.ops.mesh.primitive_uv_sphere_add(radius=0.4)
