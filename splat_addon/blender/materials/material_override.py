@@ -8,8 +8,11 @@ from dataclasses import replace
 import bpy
 import numpy as np
 
-from ...surfels import OPTIONAL_LAYOUT, Surfels
+from ...surfels import Surfels
 from .material_surfaces import plain_color
+
+#: The fields of surfels that come from their own materials; the others belong to their form.
+_OF_MATERIALS = ("roughness", "metallic", "emission", "uvs", "uv_along_x", "uv_along_y", "uv_border")
 
 
 def override_of(depsgraph: bpy.types.Depsgraph) -> bpy.types.Material | None:
@@ -26,14 +29,14 @@ class Overridden:
         self._used: set[int] = set()
 
     def get(self, surfels: Surfels, material: bpy.types.Material, notes) -> Surfels:
-        """The surfels in the plain colour and opacity of the material, without further fields of their own."""
+        """The surfels in the plain colour and opacity of the material, without the fields of their own materials."""
         color, is_textured = plain_color(material)
         if is_textured:
             notes.add(f"The overriding material {material.name!r} is textured; surfels have its socket's plain colour")
         key = id(surfels)
         self._used.add(key)
         if key not in self._made or self._made[key][:2] != (surfels, color):
-            bare = dict.fromkeys(OPTIONAL_LAYOUT)
+            bare = dict.fromkeys(_OF_MATERIALS)
             colors = np.tile(np.float32(color), (len(surfels), 1))
             self._made[key] = surfels, color, replace(surfels, colors=colors, **bare)
         return self._made[key][2]

@@ -37,6 +37,18 @@ def test_the_material_override_paints_everything(things, scene, picture, meshes)
     assert np.array_equal(picture(), before)
 
 
+def test_under_an_override_surfels_keep_their_form(scene, add_camera, cube, convert, picture):
+    """They end at edges as before, and those inside flat faces do not bulge over them."""
+    add_camera(type="ORTHO", ortho_scale=4)
+    cube.rotation_euler = (0.4, 0.5, 0.3)
+    convert(resolution=6, source="HIDE")
+    before = picture()
+    bpy.context.view_layer.material_override = material((1, 1, 1, 1), "white")
+    covered = picture()
+    assert 0.2 < before[..., 3].mean() < 0.8
+    assert np.array_equal(covered[..., 3], before[..., 3])
+
+
 def test_another_override_takes_the_place_of_the_first_in_a_view(add_square):
     """A view reads a mesh again only if its key is another one."""
     from splat_addon.blender.export.live_meshes import LiveMeshes
