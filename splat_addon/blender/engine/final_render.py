@@ -100,6 +100,9 @@ def _picture(engine, depsgraph, resources: _Resources, settings, turn: tuple[int
     """Draw the picture of the engine's active view, number `turn[0]` of `turn[1]`."""
     scene, notes = depsgraph.scene, Notes()
     times = shutter_times(scene, depsgraph.view_layer, settings.samples)
+    # while the shutter is open, a marker may make another camera the scene's; the picture is this one's
+    camera = engine.camera_override or scene.camera
+    camera = camera and camera.original
 
     def moments(go):
         for time in times or [None]:
@@ -109,7 +112,7 @@ def _picture(engine, depsgraph, resources: _Resources, settings, turn: tuple[int
             if said.left_out and not engine.is_preview and stops_where_broken(scene):
                 raise ValueError(_left_out_sentence(said.left_out))
             notes.counts |= said.counts
-            yield exported, view_camera(engine, depsgraph)
+            yield exported, view_camera(engine, depsgraph, camera and camera.evaluated_get(depsgraph))
 
     with moving_time(engine, depsgraph) as go:
         frame = resources.renderer.render_moments(
@@ -120,8 +123,7 @@ def _picture(engine, depsgraph, resources: _Resources, settings, turn: tuple[int
             part=rendered_part(scene.render),
             is_repeatable=True,
         )
-    camera_object = engine.camera_override or scene.camera
-    for sentence in depth_of_field_notes(camera_object, settings.samples):
+    for sentence in depth_of_field_notes(camera, settings.samples):
         notes.add(sentence)
     for sentence in motion_blur_notes(scene, depsgraph.view_layer, settings.samples):
         notes.add(sentence)

@@ -123,13 +123,15 @@ assert PANORAMA_PROPERTIES.keys() == _PROJECTIONS.keys()
 _KINDS = {"PERSP": _flat_camera, "ORTHO": _flat_camera, "PANO": _panorama}
 
 
-def view_camera(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> Camera | Panorama:
+def view_camera(
+    engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, camera_object: bpy.types.Object | None
+) -> Camera | Panorama:
     """The camera of a final render's active view, for the whole frame. For a stereo camera this is one eye, with its
     position and shift.
 
-    Raises ValueError as `final_camera`.
+    camera_object: evaluated. Raises ValueError as `final_camera`.
     """
-    scene, camera_object = depsgraph.scene, engine.camera_override or depsgraph.scene.camera
+    scene = depsgraph.scene
     camera = _whole_camera(depsgraph, camera_object)
     if not scene.render.use_multiview:
         return camera

@@ -74,6 +74,24 @@ def test_a_moving_camera_blurs_as_what_moves_the_other_way(scene, flat_camera, a
     assert by_object.any() and np.count_nonzero(np.abs(by_camera - by_object).max(axis=2) > 2e-2) <= 2
 
 
+@pytest.mark.parametrize("position", ["START", "CENTER", "END"])
+def test_a_cut_to_another_camera_blends_no_pictures(position, scene, flat_camera, add_camera, add_surfels, picture):
+    """A marker makes another camera the scene's while the centred shutter is open; the picture is only that one's."""
+    add_surfels([(0, 0, 0)], size=3.0)
+    second = add_camera((8, 0, 10), type="ORTHO", ortho_scale=32)
+    move(second)
+    scene.render.motion_blur_position = position
+    scene.render.use_motion_blur = False
+    sharp = picture()
+    scene.render.use_motion_blur = True
+    uncut = picture()
+    for number, camera in ((1, flat_camera), (10, second)):
+        scene.timeline_markers.new(camera.name, frame=number).camera = camera
+    assert np.abs(uncut - sharp).max() > 0.2
+    np.testing.assert_allclose(picture(), uncut, atol=1e-5)
+    assert scene.camera == second
+
+
 def test_a_curve_says_when_the_shutter_is_open(scene, flat_camera, add_surfels, picture):
     """If the shutter's curve rises evenly, the mean time is 2/3 of the shutter's and the variance 1/18."""
     move(add_surfels([(0, 0, 0)], size=3.0))
