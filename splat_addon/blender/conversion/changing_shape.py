@@ -7,7 +7,8 @@ from collections.abc import Iterator
 
 import bpy
 
-from .animation import animated_paths, is_animated, moves_against
+from ..geometry.sources import has_surfaces
+from .animation import animated_paths, is_animated, is_moving, moves_against
 
 #: Modifiers that move vertices from frame to frame.
 _DEFORMING = frozenset(
@@ -22,6 +23,9 @@ _DEFORMING_IF_CHANGED = frozenset("BEVEL LAPLACIANSMOOTH MIRROR OCEAN SCREW SOLI
 _REBUILDING_IF_CHANGED = frozenset(
     "ARRAY BOOLEAN DECIMATE EDGE_SPLIT MASK MULTIRES REMESH SKIN SUBSURF TRIANGULATE VOLUME_TO_MESH WELD".split()
 )
+
+#: Modifiers that move vertices as time passes.
+_PASSING = frozenset("CLOTH MESH_CACHE MESH_SEQUENCE_CACHE SOFT_BODY WAVE".split())
 
 #: Modifiers that make other vertices as time passes.
 _REBUILDING = frozenset({"BUILD", "EXPLODE", "PARTICLE_INSTANCE"})
@@ -38,6 +42,30 @@ def rebuilt_by(source: bpy.types.Object) -> str | None:
     return next((m.name for m in source.modifiers if _rebuilds(m, source)), None)
 
 
+def changes_inside(source: bpy.types.Object) -> str | None:
+    """The name of an object that may move or change its shape in the collection that `source` shows, or None."""
+    seen, waiting = set(), [source]
+    while waiting:
+        owner = waiting.pop()
+        placed = owner.instance_collection if owner.instance_type == "COLLECTION" else None
+        if placed is None or placed in seen:
+            continue
+        seen.add(placed)
+        shown = [each for each in placed.all_objects if has_surfaces(each) and not each.hide_render]
+        waiting += shown
+        if changing := next(filter(_may_change, shown), None):
+            return changing.name
+    return None
+
+
+def _may_change(owner: bpy.types.Object) -> bool:
+    shapes = owner.data, getattr(owner.data, "shape_keys", None)
+    helpers = (helper for modifier in owner.modifiers for helper in _used_by(modifier))
+    if is_moving(owner) or any(map(is_animated, (*shapes, *helpers))):
+        return True
+    return bool(rebuilt_by(owner)) or any(modifier.type in _PASSING for modifier in owner.modifiers)
+
+
 def _deforms(modifier: bpy.types.Modifier, source: bpy.types.Object) -> bool:
     return modifier.type in _DEFORMING or (modifier.type in _DEFORMING_IF_CHANGED and _changes(modifier, source))
 
@@ -45,9 +73,18 @@ def _deforms(modifier: bpy.types.Modifier, source: bpy.types.Object) -> bool:
 def _rebuilds(modifier: bpy.types.Modifier, source: bpy.types.Object) -> bool:
     if modifier.type == "FLUID":
         return modifier.show_render and modifier.fluid_type == "DOMAIN"
+    if modifier.type == "PARTICLE_SYSTEM":
+        return modifier.show_render and _emits_objects(modifier.particle_system.settings)
     if modifier.type in _REBUILDING:
         return modifier.show_render
     return modifier.type in _REBUILDING_IF_CHANGED and _changes(modifier, source)
+
+
+def _emits_objects(particles: bpy.types.ParticleSettings) -> bool:
+    """Whether particles that are drawn as objects move, or appear one after the other."""
+    if particles.type != "EMITTER" or particles.render_type not in ("OBJECT", "COLLECTION"):
+        return False
+    return particles.physics_type != "NO" or particles.frame_start != particles.frame_end
 
 
 def _changes(modifier: bpy.types.Modifier, source: bpy.types.Object) -> bool:

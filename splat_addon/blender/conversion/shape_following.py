@@ -20,7 +20,7 @@ from ..geometry.node_groups import known_group, new_modifier_group, uses_group
 from ..geometry.node_maths import Maths, Socket, enabled
 from ..geometry.reading import read_values
 from ..ids import POINT_ATTRIBUTES, REST, SHAPE_GROUP
-from .changing_shape import is_deformed, rebuilt_by
+from .changing_shape import changes_inside, is_deformed, rebuilt_by
 from .following import follows
 from .source_record import record_of, sources_of
 
@@ -58,6 +58,8 @@ def follow_shape(made: bpy.types.Object, conversion, depsgraph: bpy.types.Depsgr
         return None
     if why := _why_never(source):
         return why
+    if name := changes_inside(source):
+        return f"{name!r} in its collection may move or change its shape; {_INSTEAD}"
     if not is_deformed(source):
         return None
     surfels, mesh = conversion.surfels, conversion.mesh

@@ -279,8 +279,21 @@ def build_up(sheet, cutter):
     sheet.modifiers.new("other faces", "BUILD")
 
 
+def emit(sheet, cutter):
+    particles = sheet.modifiers.new("other faces", "PARTICLE_SYSTEM").particle_system.settings
+    particles.render_type, particles.instance_object, particles.count = "OBJECT", cutter, 4
+
+
+def scatter(sheet, cutter):
+    """Particles that appear at once and stay where they are."""
+    emit(sheet, cutter)
+    particles = sheet.particle_systems[0].settings
+    particles.physics_type, particles.frame_end = "NO", particles.frame_start
+
+
 @pytest.mark.parametrize(
-    "change", [move_the_cutter, move_the_sheet, bend_the_cutter, count_up, make_coarser, build_up, stand_still]
+    "change",
+    [move_the_cutter, move_the_sheet, bend_the_cutter, count_up, make_coarser, build_up, stand_still, emit, scatter],
 )
 def test_modifiers_that_make_other_faces_are_named(change, sheet, convert, capfd):
     cutter = add_cutter()
@@ -292,7 +305,54 @@ def test_modifiers_that_make_other_faces_are_named(change, sheet, convert, capfd
     (made,) = convert(density="RESOLUTION", resolution=16)
     assert [modifier.name for modifier in made.modifiers] == ["Surfels as Points"]
     expected = "Warning: What bends 'Sheet' does not bend its surfels: its modifier 'other faces' makes other faces"
-    assert (expected in capfd.readouterr().out) == (change is not stand_still)
+    assert (expected in capfd.readouterr().out) == (change not in (stand_still, scatter))
+
+
+def stand_in_place(sheet):
+    """It has what moves others, and nothing moves."""
+    sheet.modifiers.new("bent", "ARMATURE").object = bpy.data.objects.new("rig", bpy.data.armatures.new("rig"))
+
+
+def move_itself(sheet):
+    move(sheet)
+
+
+def move_its_parent(sheet):
+    sheet.parent = bpy.data.objects.new("parent", None)
+    move(sheet.parent)
+
+
+def move_its_keys(sheet):
+    move(add_keys(sheet), "value")
+
+
+def pose_its_rig(sheet):
+    stand_in_place(sheet)
+    move(sheet.modifiers["bent"].object)
+
+
+def wave(sheet):
+    sheet.modifiers.new("wave", "WAVE")
+
+
+@pytest.mark.parametrize("is_nested", [False, True])
+@pytest.mark.parametrize("change", [stand_in_place, move_itself, move_its_parent, move_its_keys, pose_its_rig, wave])
+def test_what_moves_inside_a_collection_is_named(change, is_nested, sheet, convert, capfd):
+    """Such as a linked prop or character, which the surfels show as it was when it was converted."""
+    change(sheet)
+    bpy.context.scene.collection.objects.unlink(sheet)
+    instancer = sheet
+    for name in ("inner", "outer")[: 1 + is_nested]:
+        hidden = bpy.data.collections.new(name)
+        hidden.objects.link(instancer)
+        instancer = bpy.data.objects.new(name, None)
+        instancer.instance_type, instancer.instance_collection = "COLLECTION", hidden
+    bpy.context.scene.collection.objects.link(instancer)
+    instancer.select_set(True)
+    bpy.context.view_layer.objects.active = instancer
+    convert(density="RESOLUTION", resolution=16)
+    expected = f"Warning: What bends '{instancer.name}' does not bend its surfels: 'Sheet' in its collection may move"
+    assert (expected in capfd.readouterr().out) == (change is not stand_in_place)
 
 
 def test_an_animated_thickness_is_followed(sheet, convert, bent_surfels):
