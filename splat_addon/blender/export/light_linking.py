@@ -12,17 +12,18 @@ from ...rendering.scene.light import MAX_LIGHT_SETS
 
 
 class LinkedReceivers(NamedTuple):
-    """included: names of the objects that a light lights, or None for all. excluded: names of objects that it does not
-    light."""
+    """included: the objects that a light lights, or None for all. excluded: the objects that it does not light. Each is
+    known by its session_uid, as objects of several libraries may have the same name."""
 
-    included: frozenset[str] | None
-    excluded: frozenset[str]
+    included: frozenset[int] | None
+    excluded: frozenset[int]
 
-    def has(self, names: tuple[str, ...]) -> bool:
-        """Whether the light reaches an instance. names: of the object, and of the objects that make the instance."""
-        if self.excluded.intersection(names):
+    def has(self, objects: tuple[int, ...]) -> bool:
+        """Whether the light reaches an instance. objects: session_uids of the object, and of the objects that make the
+        instance."""
+        if self.excluded.intersection(objects):
             return False
-        return self.included is None or bool(self.included.intersection(names))
+        return self.included is None or bool(self.included.intersection(objects))
 
 
 EVERYTHING = LinkedReceivers(None, frozenset())
@@ -33,11 +34,11 @@ def receivers_of(light: bpy.types.Object) -> LinkedReceivers:
     collection = light.light_linking.receiver_collection if light.light_linking else None
     if collection is None:
         return EVERYTHING
-    states: dict[str, set[str]] = {"INCLUDE": set(), "EXCLUDE": set()}
+    states: dict[str, set[int]] = {"INCLUDE": set(), "EXCLUDE": set()}
     for object_, member in zip(collection.objects, collection.collection_objects, strict=True):
-        states[member.light_linking.link_state].add(object_.name)
+        states[member.light_linking.link_state].add(object_.session_uid)
     for child, member in zip(collection.children, collection.collection_children, strict=True):
-        states[member.light_linking.link_state].update(o.name for o in child.all_objects)
+        states[member.light_linking.link_state].update(o.session_uid for o in child.all_objects)
     return LinkedReceivers(frozenset(states["INCLUDE"]) or None, frozenset(states["EXCLUDE"]))
 
 
@@ -51,8 +52,9 @@ class LightSets:
 
     def of_instance(self, entry: bpy.types.DepsgraphObjectInstance) -> int:
         """The set number for an entry of the depsgraph."""
-        names = (entry.object.original.name, *((entry.parent.original.name,) if entry.is_instance else ()))
-        lit_by = tuple(receivers.has(names) for receivers in self._receivers)
+        makers = (entry.object, entry.parent) if entry.is_instance else (entry.object,)
+        objects = tuple(each.original.session_uid for each in makers)
+        lit_by = tuple(receivers.has(objects) for receivers in self._receivers)
         if lit_by not in self._numbers and len(self._numbers) == MAX_LIGHT_SETS:
             self._notes.add(
                 f"Light linking uses more than {MAX_LIGHT_SETS} different sets of objects; the further ones are lit "

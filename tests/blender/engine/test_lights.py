@@ -185,6 +185,26 @@ def test_a_light_lights_what_it_is_linked_to(state, scene, add_camera, add_light
     assert lit.max() > 0.5 and unlit.max() == 0
 
 
+def test_a_light_tells_objects_of_the_same_name_apart(tmp_path, scene, add_camera, add_light, add_sheet, picture):
+    """An object of a library may have the name of one in the file."""
+    scene.surfel_splatting.shading = "principled"
+    add_camera((0, 0, 4))
+    left = add_sheet(side=1, name="sheet")
+    left.location.x = -0.6
+    bpy.data.libraries.write(str(tmp_path / "library.blend"), {left})
+    with bpy.data.libraries.load(str(tmp_path / "library.blend"), link=True) as (_, wanted):
+        wanted.objects = ["sheet"]
+    [unlinked] = wanted.objects
+    scene.collection.objects.link(unlinked)
+    left.location.x = 0.6
+    linked = add_light("SUN", 3, (0, 0, 0), (0, 0, 0), {})
+    linked.light_linking.receiver_collection = bpy.data.collections.new("receivers")
+    linked.light_linking.receiver_collection.objects.link(left)
+    seen = picture()
+    assert unlinked.name == left.name and (seen[16, 8, 3], seen[16, 24, 3]) == (1, 1)
+    assert seen[:, 16:, 0].max() > 0.5 and seen[:, :16, 0].max() == 0
+
+
 def gradient_world(scene, rotation=(0, 0, 0)):
     """A world image that gets brighter upwards and to one side, with a bright lamp in it."""
     image = bpy.data.images.new("sky", 64, 32, float_buffer=True)
