@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from . import commands, manual, mesh_sampling_settings, operators, preferences, properties, translations
+from . import commands, manual, mesh_sampling_settings, operators, overrides, preferences, properties, translations
 from .conversion import bring_back, mesh_settings, prediction, source_record
 from .engine import final_render, render_engine, render_passes
 from .geometry import surfel_files
@@ -41,6 +41,7 @@ MODULES = (
     source_record,
     surfel_files,
     bring_back,
+    overrides,
     operators,
     prediction,
     sidebar,

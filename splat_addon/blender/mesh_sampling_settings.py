@@ -18,7 +18,7 @@ from .density_properties import (
 from .enum_values import check_choices
 from .geometry.sources import asked_of
 from .ids import OBJECT_SETTINGS, RENDER_SETTINGS
-from .registration import with_property
+from .registration import OVERRIDABLE, with_property
 
 #: density -> the property of `MeshSamplingProperties` that holds its number, and the kind of density.
 NUMBERED = {
@@ -143,6 +143,7 @@ class SurfelObjectSettings(bpy.types.PropertyGroup):
         ],
         default="SCENE",
         update=_read_again,
+        override=OVERRIDABLE,
     )
     split_distance: FloatProperty(
         name="Distance",
@@ -152,6 +153,7 @@ class SurfelObjectSettings(bpy.types.PropertyGroup):
         min=1e-6,
         soft_max=1000.0,
         update=_read_again,
+        override=OVERRIDABLE,
     )
     split_pixels: FloatProperty(
         name="Pixels per Surfel",
@@ -160,11 +162,13 @@ class SurfelObjectSettings(bpy.types.PropertyGroup):
         min=0.1,
         soft_max=10.0,
         update=_read_again,
+        override=OVERRIDABLE,
     )
     split_group: StringProperty(
         name="Vertex Group",
         description="The object is drawn as polygons where its weights are 0.5 or more",
         update=_read_again,
+        override=OVERRIDABLE,
     )
     detail: FloatProperty(
         name="Object Detail",
@@ -178,6 +182,7 @@ class SurfelObjectSettings(bpy.types.PropertyGroup):
         soft_max=4.0,
         max=100.0,
         update=_read_again,
+        override=OVERRIDABLE,
     )
 
 

@@ -8,18 +8,22 @@ from collections.abc import Callable
 import bpy
 from bpy.props import PointerProperty
 
+#: The option `override` of a property that can be changed in a library override, and is kept with the file then.
+OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}
+
 
 def with_property(owner: type, name: str, settings: type, *classes: type) -> tuple[Callable, Callable]:
     """The functions register() and unregister() for the property `name` of an owner (`bpy.types.Scene` ...), a group of
     `settings`.
 
-    classes: registered with it; a group inside another must come first.
+    classes: registered with it; a group inside another must come first. Library overrides may change those of the
+        settings that say so (`OVERRIDABLE`).
     """
     register_classes, unregister_classes = bpy.utils.register_classes_factory((*classes, settings))
 
     def register():
         register_classes()
-        setattr(owner, name, PointerProperty(type=settings))
+        setattr(owner, name, PointerProperty(type=settings, override=OVERRIDABLE))
 
     def unregister():
         delattr(owner, name)

@@ -20,7 +20,7 @@ from bpy.props import (
 )
 
 from ..ids import OBJECT_SETTINGS, SURFEL_RECORD
-from ..registration import with_property
+from ..registration import OVERRIDABLE, with_property
 from .mesh_settings import ConversionProperties, SurfelConversionSettings, chosen_density
 from .points_settings import PointsProperties
 
@@ -47,10 +47,12 @@ class SurfelRecord(bpy.types.PropertyGroup):
     is_hidden_source: BoolProperty(
         name="Hidden for Surfels",
         description="This object was hidden when it was converted, and comes back when its surfels are deleted",
+        override=OVERRIDABLE,
     )
     was_disabled_in_renders: BoolProperty(
         name="Disabled in Renders Before",
         description="This object was already disabled in renders when it was converted, and stays so",
+        override=OVERRIDABLE,
     )
 
 

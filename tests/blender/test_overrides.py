@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is set in a library override, such as a character's in a shot, stays with the shot's file."""
+
+import bpy
+import pytest
+
+
+@pytest.fixture
+def overridden(tmp_path, add_square):
+    """The override of a linked object, selected and active."""
+    made = bpy.data.collections.new("character")
+    made.objects.link(add_square("body"))
+    bpy.data.libraries.write(str(tmp_path / "library.blend"), {made})
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    with bpy.data.libraries.load(str(tmp_path / "library.blend"), link=True) as (_, wanted):
+        wanted.collections = ["character"]
+    wanted.collections[0].override_hierarchy_create(bpy.context.scene, bpy.context.view_layer, do_fully_editable=True)
+    [body] = bpy.context.scene.objects
+    body.select_set(True)
+    bpy.context.view_layer.objects.active = body
+    bpy.context.view_layer.update()
+    return body
+
+
+@pytest.fixture
+def saved_and_opened(tmp_path):
+    """saved_and_opened() saves the file and opens it again."""
+
+    def again() -> None:
+        bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
+        bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "shot.blend"))
+        bpy.context.view_layer.update()
+
+    return again
+
+
+def test_how_an_overridden_object_is_drawn_is_kept(overridden, saved_and_opened):
+    kept = {"render_as": "DISTANCE", "split_distance": 7.0, "split_pixels": 3.0, "split_group": "head", "detail": 2.0}
+    settings = overridden.surfel_splatting
+    for name, value in kept.items():
+        assert settings.is_property_overridable_library(name)
+        setattr(settings, name, value)
+    for _ in range(2):
+        saved_and_opened()
+        [body] = bpy.context.scene.objects
+        assert body.override_library and {name: getattr(body.surfel_splatting, name) for name in kept} == kept
+
+
+@pytest.mark.parametrize("was_disabled", [False, True])
+def test_an_overridden_source_that_was_hidden_comes_back(overridden, saved_and_opened, convert, was_disabled):
+    overridden.hide_render = was_disabled
+    convert(resolution=8, source="HIDE")
+    saved_and_opened()
+    body, made = (bpy.context.scene.objects[name] for name in ("body", "body surfels"))
+    assert body.override_library and body.hide_render and body.hide_get()
+    bpy.data.objects.remove(made)
+    bpy.context.view_layer.update()
+    assert body.hide_render == was_disabled and not body.hide_get()
