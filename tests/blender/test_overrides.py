@@ -6,19 +6,31 @@ import pytest
 
 
 @pytest.fixture
-def overridden(tmp_path, add_square):
+def override(tmp_path):
+    """override(*objects) -> the overrides of these objects of the file, linked from a file of their own."""
+
+    def replaced(*objects: bpy.types.Object) -> list[bpy.types.Object]:
+        made = bpy.data.collections.new("character")
+        for each in objects:
+            made.objects.link(each)
+        bpy.data.libraries.write(str(tmp_path / "library.blend"), {made})
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+        with bpy.data.libraries.load(str(tmp_path / "library.blend"), link=True) as (_, wanted):
+            wanted.collections = ["character"]
+        context = bpy.context
+        wanted.collections[0].override_hierarchy_create(context.scene, context.view_layer, do_fully_editable=True)
+        context.view_layer.update()
+        return list(context.scene.objects)
+
+    return replaced
+
+
+@pytest.fixture
+def overridden(override, add_square):
     """The override of a linked object, selected and active."""
-    made = bpy.data.collections.new("character")
-    made.objects.link(add_square("body"))
-    bpy.data.libraries.write(str(tmp_path / "library.blend"), {made})
-    bpy.ops.wm.read_factory_settings(use_empty=True)
-    with bpy.data.libraries.load(str(tmp_path / "library.blend"), link=True) as (_, wanted):
-        wanted.collections = ["character"]
-    wanted.collections[0].override_hierarchy_create(bpy.context.scene, bpy.context.view_layer, do_fully_editable=True)
-    [body] = bpy.context.scene.objects
+    [body] = override(add_square("body"))
     body.select_set(True)
     bpy.context.view_layer.objects.active = body
-    bpy.context.view_layer.update()
     return body
 
 
@@ -56,3 +68,15 @@ def test_an_overridden_source_that_was_hidden_comes_back(overridden, saved_and_o
     bpy.data.objects.remove(made)
     bpy.context.view_layer.update()
     assert body.hide_render == was_disabled and not body.hide_get()
+
+
+def test_an_update_of_linked_surfels_says_that_they_would_not_be_saved(override, add_square, convert):
+    source = add_square("body")
+    made = override(source, *convert(resolution=8))
+    [surfels] = [each for each in made if each.name == "body surfels"]
+    count = len(surfels.data.vertices)
+    surfels.select_set(True)
+    surfels.surfel_record.mesh.resolution = 16
+    with pytest.raises(RuntimeError, match="body surfels: Its surfels belong to a linked file; update them there"):
+        bpy.ops.object.surfels_update()
+    assert len(surfels.data.vertices) == count

@@ -79,7 +79,12 @@ class OBJECT_OT_surfels_update(bpy.types.Operator):
 
 
 def _batch(made: bpy.types.Object, context: bpy.types.Context) -> Batch:
-    """A batch of a surfel object's sources. Raises ValueError if one of them is no longer visible."""
+    """A batch of a surfel object's sources.
+
+    Raises ValueError if one of them is no longer visible, or if the surfels would not be saved.
+    """
+    if made.data.library is not None:
+        raise ValueError("Its surfels belong to a linked file; update them there.")
     sources, record = sources_of(made), record_of(made)
     for source in sources:
         if source.name not in context.view_layer.objects:
