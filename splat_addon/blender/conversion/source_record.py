@@ -84,8 +84,11 @@ def sources_of(made: bpy.types.Object) -> list[bpy.types.Object]:
 
 
 def sources_in(scene: bpy.types.Scene) -> set[bpy.types.Object]:
-    """The sources of all surfel objects in a scene, and in the collections that it instances."""
-    found, seen, waiting = set(), set(), [scene.objects]
+    """The sources of all surfel objects in a scene, in its background scenes, and in collections instanced there."""
+    found, seen, waiting = set(), set(), []
+    while scene is not None:
+        waiting.append(scene.objects)
+        scene = scene.background_set
     while waiting:
         for made in waiting.pop():
             if made.type == "MESH":

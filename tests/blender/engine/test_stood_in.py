@@ -5,6 +5,8 @@ import bpy
 import numpy as np
 import pytest
 
+from splat_addon.blender.engine import final_render
+
 
 @pytest.fixture
 def square(add_camera, add_square):
@@ -30,3 +32,15 @@ def test_it_is_drawn_beside_them_where_that_is_chosen(square, convert, picture):
     (made,) = convert(resolution=8)
     made.hide_render, square.surfel_splatting.render_as = True, "POLYGONS"
     assert np.array_equal(picture(), before)
+
+
+def test_neither_is_one_of_a_background_scene(square, scene, convert, tmp_path):
+    """Renders show the objects of a background scene as if they were in the scene."""
+    convert(resolution=8)
+    shot = bpy.data.scenes.new("shot")
+    shot.background_set, shot.camera, shot.render.engine = scene, scene.camera, scene.render.engine
+    shot.render.filepath = str(tmp_path / "shot.png")
+    shot.render.resolution_x = shot.render.resolution_y = 16
+    bpy.ops.render.render(write_still=True, scene=shot.name)
+    drawn = final_render.last_frame_stats
+    assert drawn["splats_drawn"] > 0 and drawn["polygons"] == 0
