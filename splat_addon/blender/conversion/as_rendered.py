@@ -12,6 +12,8 @@ from contextlib import contextmanager
 
 import bpy
 
+from ..geometry.sources import instanced_collections
+
 #: modifier type -> its viewport property and its render property
 _MODIFIERS = {
     "SUBSURF": ("levels", "render_levels"),
@@ -29,11 +31,11 @@ def as_rendered(sources: Iterable[bpy.types.Object], context: bpy.types.Context)
             if source.hide_get():
                 source.hide_set(False)
                 changed.append((source.hide_set, True))
-            for owner in [source, *(source.instance_collection.all_objects if source.instance_collection else ())]:
-                for thing, name, value in _settings(owner):
-                    if getattr(thing, name) != value:
-                        changed.append((_setter(thing, name), getattr(thing, name)))
-                        setattr(thing, name, value)
+            shown = source, "hide_viewport", source.hide_viewport and source.hide_render
+            for thing, name, value in (shown, *_settings(source), *_settings_inside(source)):
+                if getattr(thing, name) != value:
+                    changed.append((_setter(thing, name), getattr(thing, name)))
+                    setattr(thing, name, value)
         render = context.scene.render
         if render.use_simplify and render.simplify_subdivision != render.simplify_subdivision_render:
             changed.append((_setter(render, "simplify_subdivision"), render.simplify_subdivision))
@@ -55,9 +57,18 @@ def differing_levels(owner: bpy.types.Object) -> str | None:
     return None
 
 
+def _settings_inside(source: bpy.types.Object) -> Iterator[tuple[object, str, object]]:
+    """The same as `_settings`, of the collections that a source instances and of what is in them."""
+    collections = instanced_collections(source)
+    for collection in collections:
+        yield collection, "hide_viewport", collection.hide_render
+    for owner in {owner for collection in collections for owner in collection.objects} - {source}:
+        yield from _settings(owner)
+        yield owner, "hide_viewport", owner.hide_render
+
+
 def _settings(owner: bpy.types.Object) -> Iterator[tuple[object, str, object]]:
     """An object's viewport settings, with the values they have in a render."""
-    yield owner, "hide_viewport", owner.hide_viewport and owner.hide_render
     yield owner, "show_instancer_for_viewport", owner.show_instancer_for_render
     for modifier in owner.modifiers:
         yield modifier, "show_viewport", modifier.show_render

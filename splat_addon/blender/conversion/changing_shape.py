@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import bpy
 
-from ..geometry.sources import has_surfaces
+from ..geometry.sources import has_surfaces, instanced_collections
 from .animation import animated_paths, is_animated, is_moving, moves_against
 
 #: Modifiers that move vertices from frame to frame.
@@ -44,18 +44,10 @@ def rebuilt_by(source: bpy.types.Object) -> str | None:
 
 def changes_inside(source: bpy.types.Object) -> str | None:
     """The name of an object that may move or change its shape in the collection that `source` shows, or None."""
-    seen, waiting = set(), [source]
-    while waiting:
-        owner = waiting.pop()
-        placed = owner.instance_collection if owner.instance_type == "COLLECTION" else None
-        if placed is None or placed in seen:
-            continue
-        seen.add(placed)
-        shown = [each for each in placed.all_objects if has_surfaces(each) and not each.hide_render]
-        waiting += shown
-        if changing := next(filter(_may_change, shown), None):
-            return changing.name
-    return None
+    inside = (each for placed in instanced_collections(source) for each in placed.objects)
+    shown = (each for each in inside if has_surfaces(each) and not each.hide_render)
+    changing = next(filter(_may_change, shown), None)
+    return changing and changing.name
 
 
 def _may_change(owner: bpy.types.Object) -> bool:

@@ -33,6 +33,19 @@ def has_surfaces(source: bpy.types.Object) -> bool:
     return source.type in _SURFACES and not is_surfel_object(source)
 
 
+def instanced_collections(source: bpy.types.Object) -> set[bpy.types.Collection]:
+    """The collections whose objects `source` shows as a collection instance, with those inside them."""
+    found, waiting = set(), [source]
+    while waiting:
+        owner = waiting.pop()
+        placed = owner.instance_collection if owner.instance_type == "COLLECTION" else None
+        for each in (placed, *placed.children_recursive) if placed is not None else ():
+            if each not in found:
+                found.add(each)
+                waiting += each.objects
+    return found
+
+
 def is_surfel_object(source: bpy.types.Object) -> bool:
     """Whether the object stores surfels itself."""
     return source.type == "MESH" and has_surfels(source.data)

@@ -114,6 +114,31 @@ def test_a_collection_instance_with_a_text_and_a_mirrored_mesh(assert_covers, se
     assert_covers()
 
 
+@pytest.mark.parametrize("is_nested", [False, True])
+def test_a_collection_instance_is_converted_as_renders_show_it(is_nested, add_square, select, convert, world_positions):
+    """Assets have a stand-in for the viewport and another object for renders, in collections or alone."""
+    asset = bpy.data.collections.new("asset")
+    for number, (hides_collection, in_viewport) in enumerate([(0, 0), (0, 1), (1, 0), (1, 1)]):
+        part, shown = bpy.data.collections.new("part"), add_square()
+        asset.children.link(part)
+        part.objects.link(shown)
+        bpy.context.scene.collection.objects.unlink(shown)
+        shown.location.x = 2 * number
+        hidden = part if hides_collection else shown
+        hidden.hide_viewport, hidden.hide_render = not in_viewport, bool(in_viewport)
+    instancer = asset
+    for name in ("inner", "outer")[: 1 + is_nested]:
+        instancer = bpy.data.objects.new(name, None)
+        instancer.instance_type, instancer.instance_collection = "COLLECTION", asset
+        asset = bpy.data.collections.new(name)
+        asset.objects.link(instancer)
+    bpy.context.scene.collection.objects.link(instancer)
+    select(instancer)
+    [made] = convert(resolution=8)
+    assert {int(x) // 2 for x in world_positions(made)[:, 0]} == {0, 2}
+    assert {each.hide_viewport for each in bpy.data.collections if each.name.startswith("part")} == {False, True}
+
+
 def test_objects_that_share_a_mesh_keep_materials_of_their_own(select, convert, surfels_of):
     """An object's own slot may hold another material than its mesh's, as on linked copies of furniture."""
     hidden, looks = bpy.data.collections.new("hidden"), [bpy.data.materials.new(name) for name in ("mesh's", "own")]
