@@ -291,6 +291,10 @@ def test_its_strength_is_taken(nodes, made):
     [
         (lambda n: n.link(n.add("ShaderNodeBump").outputs[0], "Normal"), "normal comes from a Bump node"),
         (lambda n: n.link(n.add("ShaderNodeTexNoise").outputs[0], "Roughness"), "roughness comes from a Noise"),
+        (
+            lambda n: n.link(n.add("ShaderNodeObjectInfo").outputs["Random"], "Roughness"),
+            "roughness comes from an Object",
+        ),
         (lambda n: n.link(n.add("ShaderNodeTexNoise").outputs[1], "Emission Color"), "emission comes from a Noise"),
         (
             lambda n: n.link(n.add("ShaderNodeMapRange", {3: n.texture().outputs[1]}).outputs[0], "Alpha"),

@@ -17,7 +17,7 @@ from ...sampling.attributes.surfaces import ALPHA, RED
 from ..geometry.attributes import has_surfels_beside_faces
 from .mean_surfaces import mean_of
 from .node_products import AttributeSource, ImageSource, Product, linked, outer, product
-from .node_trees import uses_nodes
+from .node_trees import called, uses_nodes
 from .shader_mixes import channels
 from .surface_shaders import METALS, SHADERS, Shader, is_holdout, surface_shader, why_unseen
 from .texture_images import UnreadableError, linear_pixels
@@ -138,7 +138,7 @@ def material_surface(material: bpy.types.Material | None, layers: MeshLayers) ->
         surface, unread = _Reader(mean.only, layers).surface()
         if not unread:
             return surface, []
-    unread = [Unread(channel, f"a {shader.node.bl_label} node") for channel in channels(shader) if mean.unsure]
+    unread = [Unread(channel, called(shader.node)) for channel in channels(shader) if mean.unsure]
     return mean.surface, unread
 
 
@@ -262,7 +262,7 @@ class _Reader:
 
     def _read_normal_map(self, node: bpy.types.Node, groups: tuple[bpy.types.Node, ...]) -> NormalMap | None:
         if node.bl_idname != "ShaderNodeNormalMap" or node.mute:
-            raise UnreadableError(f"a {'muted ' if node.mute else ''}{node.bl_label} node")
+            raise UnreadableError(called(node))
         if node.space not in _SPACES or getattr(node, "convention", "OPENGL") != "OPENGL":
             raise UnreadableError(f"a normal map in {node.space.replace('_', ' ').lower()} space, or of DirectX")
         strength, _ = outer(node.inputs["Strength"], groups)

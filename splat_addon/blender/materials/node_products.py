@@ -15,6 +15,7 @@ import numpy as np
 
 from ...sampling.attributes.surfaces import ALPHA, BLUE, GREEN, LUMINANCE, RED
 from . import function_nodes
+from .node_trees import called
 from .texture_images import UnreadableError
 
 Socket = bpy.types.NodeSocket
@@ -162,9 +163,9 @@ class _Reading:
         node, output = source
         reader = self._reader(node, output)
         if reader is None:
-            raise UnreadableError(f"a {'muted ' if node.mute else ''}{node.bl_label} node")
+            raise UnreadableError(called(node))
         if key in self._followed:
-            raise UnreadableError(f"a {node.bl_label} node in a ring of nodes")
+            raise UnreadableError(f"{called(node)} in a ring of nodes")
         if len(self._followed) == MAX_CHAIN:
             raise UnreadableError(f"a chain of more than {MAX_CHAIN} nodes")
         self._followed.append(key)
@@ -276,7 +277,7 @@ _MEAN = (1 / 3, 1 / 3, 1 / 3, 0.0)
 def _component(weights: tuple[float, ...]) -> Reader:
     def component(node: Node, read: Read) -> Product:
         if getattr(node, "mode", "RGB") != "RGB":
-            raise UnreadableError(f"a {node.bl_label} node in {node.mode}")
+            raise UnreadableError(f"{called(node)} in {node.mode}")
         return read(node.inputs[0]).weighted(weights)
 
     return component
@@ -286,7 +287,7 @@ def _mix(node: Node, read: Read) -> Product:
     factor, a, b = (_input(node, name) for name in _MIX_INPUTS[node.bl_idname])
     is_product = getattr(node, "data_type", "RGBA") == "RGBA" and node.blend_type == "MULTIPLY"
     if not is_product or linked(factor) is not None or not np.isclose(factor.default_value, 1.0):
-        raise UnreadableError(f"a {node.bl_label} node other than a full Multiply")
+        raise UnreadableError(f"{called(node)} other than a full Multiply")
     return read(a) * read(b)
 
 

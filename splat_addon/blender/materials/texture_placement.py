@@ -9,6 +9,7 @@ import numpy as np
 from mathutils import Euler
 
 from .node_products import linked
+from .node_trees import called
 from .texture_images import UnreadableError
 
 
@@ -32,7 +33,7 @@ def placement(
     while (source := linked(socket)) is not None:
         by, output = source
         if by in passed:
-            raise UnreadableError(f"an image texture that is placed by a {by.bl_label} node in a ring of nodes")
+            raise UnreadableError(f"an image texture that is placed by {called(by)} in a ring of nodes")
         passed.add(by)
         if by.bl_idname == "ShaderNodeMapping" and not by.mute:
             matrix = matrix @ _mapping(by)
@@ -46,7 +47,7 @@ def placement(
         elif (by.bl_idname, output) == ("ShaderNodeAttribute", "Vector") and by.attribute_type == "GEOMETRY":
             return uv_layer(by.attribute_name, mesh), _rows(matrix), wraps
         else:
-            raise UnreadableError(f"an image texture that is placed by a {by.bl_label} node")
+            raise UnreadableError(f"an image texture that is placed by {called(by)}")
     if socket.node != node:
         raise UnreadableError(f"an image texture that a {socket.node.bl_label} node places without coordinates")
     return uv_layer("", mesh), None, None
