@@ -92,7 +92,7 @@ class Shape:
         return not all(a is None for a in (self.roughness, self.metallic, self.emission))
 
     def take(self, rows: np.ndarray) -> Self:
-        """Some of the surfels, or corners."""
+        """Some of the surfels, or corners. rows: indices, or a mask."""
         own = {f.name: getattr(self, f.name) for f in fields(self) if f.name not in ("origin", "is_solid")}
         return replace(self, **{name: array[rows] for name, array in own.items() if array is not None})
 

@@ -7,7 +7,6 @@ with their centres on these edges sample them evenly. Section 5.2: splats too cl
 
 from __future__ import annotations
 
-from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -32,7 +31,7 @@ def joined_at_edges(surfels: Surfels, near: TriangleMesh, far: TriangleMesh, spa
         return surfels
     edges = edge_samples(near, far, spacing, float(np.median(surfels.scales)), surfels.origin)
     kept = ~too_close(surfels, edges, TOO_CLOSE * spacing)
-    return concatenate([replace(surfels, **{name: array[kept] for name, array in surfels.arrays().items()}), edges])
+    return concatenate([surfels.take(kept), edges])
 
 
 def too_close(surfels: Surfels, edges: Surfels, distance: float) -> np.ndarray:
