@@ -152,7 +152,7 @@ def _spared(instance: Instance, camera: Camera, tolerance: float) -> float:
     matrix, step = instance.model_view(camera), max(len(instance.surfels) // _SOME, 1)
     spacing = instance.surfels.scales[::step].min(axis=1) / SAMPLE_SIZE
     depth = -(instance.surfels.positions[::step] @ matrix[2, :3] + matrix[2, 3])
-    pixels = spacing * camera.pixels_per_unit() * float(np.linalg.norm(matrix[:3, :3], 2))
+    pixels = spacing * camera.pixels_per_unit() * float(instance.stretches[0])
     if not camera.is_orthographic:
         pixels = pixels / np.maximum(depth, camera.near)
     merged = (_CUT_SPACING * pixels / tolerance) ** 2
@@ -189,6 +189,6 @@ def sight(
         eye = np.append(inverse[:, 2] / np.linalg.norm(inverse[:, 2]), 0.0)
     else:
         eye = np.append(-inverse @ matrix[:3, 3], 1.0)
-    pixels = camera.pixels_per_unit() * float(np.linalg.norm(matrix[:3, :3], 2))
+    pixels = camera.pixels_per_unit() * float(instance.stretches[0])
     split = Split(matrix[:3], *split_distances) if split_distances else None
     return Sight(np.array(planes), depth, pixels, camera.near, eye, hides_backs, tolerance, is_depth_only, split)

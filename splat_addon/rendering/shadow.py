@@ -93,9 +93,10 @@ def shadow_maps(
     if not casters:
         return (), 0
     corners = np.stack([instance.world_corners() for instance in casters])
-    for_sun = receivers(scene, replace(viewers.sun, lens=None), lights_splats)
-    for_lamps = [receivers(scene, camera, lights_splats) for camera in viewers.lamps]
     suns = sum(light.casts_shadow and light.kind == "sun" for light in scene.lights)
+    lamps = sum(light.casts_shadow and light.kind != "sun" for light in scene.lights)
+    for_sun = receivers(scene, replace(viewers.sun, lens=None), lights_splats) if suns else None
+    for_lamps = [receivers(scene, camera, lights_splats) for camera in viewers.lamps] if lamps else []
     finest = max(min(resolution * (FINER_SUN // atlas_columns(suns)), LARGEST_SIDE), resolution)
     made, without, count = [], 0, 0
     for number, light in enumerate(scene.lights):

@@ -27,6 +27,7 @@ from splat_addon.rendering import (
 )
 from splat_addon.rendering.levels import LEAST_SURFELS, hierarchy_before, hierarchy_of, replaced, was_drawn
 from splat_addon.rendering.methods import METHODS
+from splat_addon.rendering.plan import executor
 from splat_addon.rendering.upload.storages import STORAGES
 from splat_addon.sampling import TriangleMesh, sample_mesh
 from splat_addon.surfels import Surfels
@@ -245,6 +246,17 @@ def test_each_shadow_map_has_a_cut_of_its_own(name, on_device):
     assert len(made) == maps or 1 < len(made) <= 6
     assert 2 + len(made) <= uploads[0] <= 2 + 2 * len(made)
     assert uploads[1:] == [0, 0]
+
+
+def test_each_view_of_an_object_is_compared_with_its_hierarchy_once(render, monkeypatch):
+    """However many passes draw it: of a small object, comparing takes longer than drawing."""
+    scene, camera = far_torus()
+    scene, seen = replace(scene, lights=LAMPS["sun"][:1]), []
+    compared = executor.sight
+    monkeypatch.setattr(executor, "sight", lambda *of: seen.append(of[:2]) or compared(*of))
+    frame = render(scene, camera, replace(SOME, shadow_resolution=64))
+    assert len(frame.stats["plan"].facts["levels"]) == 2
+    assert len(seen) == len(set(seen)) == 2 * 2
 
 
 def test_the_faces_of_a_panorama_have_cuts_of_their_own(on_device):

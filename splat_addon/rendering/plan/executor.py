@@ -43,7 +43,8 @@ class TileContext:
 
     shadow_views: the shadow casters as seen by the camera of each shadow map.
     rectangle: x, y, width, height in pixels of the tile without its margin, in the picture.
-    shown_blocks: of objects of which parts were found to be hidden, the blocks that passes draw from now on.
+    shown_blocks: of objects with levels, the blocks that passes draw from now on: those of the cut, until some of
+        them are found to be hidden.
     is_depth_only: the depth of opaque surfels is all that is seen, as in a shadow map.
     """
 
@@ -210,10 +211,11 @@ class TileContext:
 
     def shown_blocks_of(self, placed: DrawItem) -> np.ndarray:
         """(n,) int32, the blocks of an instance with levels that this view draws."""
-        if placed.instance in self.shown_blocks:
-            return self.shown_blocks[placed.instance]
-        levels, seen = self.levels(placed.instance), self.sight(placed)
-        return self.resources.cuts.kept((levels, seen.key), lambda: cut_blocks(levels.blocks, seen))
+        if placed.instance not in self.shown_blocks:
+            levels, seen = self.levels(placed.instance), self.sight(placed)
+            blocks = self.resources.cuts.kept((levels, seen.key), lambda: cut_blocks(levels.blocks, seen))
+            self.shown_blocks[placed.instance] = blocks
+        return self.shown_blocks[placed.instance]
 
     def sight(self, placed: DrawItem) -> Sight:
         """This view of an instance, as its hierarchy is given it."""
