@@ -32,7 +32,7 @@ vec3 specular_albedo(vec2 terms, vec3 f0, float f90, out vec3 scattered) {
 }
 
 // Mean direction of reflected light: off the mirrored direction, more so for rough surfaces and grazing views. The
-// view's frame: see rendering/upload/brdf_table.py.
+// view's frame: see rendering/shading_models/brdf_table.py.
 vec3 mean_direction(vec2 mean, vec3 to_eye, vec3 normal) {
   vec3 across = to_eye - normal * dot(to_eye, normal);
   return normalize(normal * mean.y + across * (mean.x / max(length(across), 1e-6)));

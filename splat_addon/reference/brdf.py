@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..rendering.upload.brdf_table import LEAST_ROUGHNESS, brdf_table, edge_table
+from ..rendering.shading_models.brdf_table import LEAST_ROUGHNESS, brdf_table, edge_table
 
 #: Below this ratio of half-axes to distance a quad counts as a point with its area, which float32 needs; the error is
 #: at most 4e-4.

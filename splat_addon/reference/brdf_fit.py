@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes brdf_table.npy and edge_table.npy in splat_addon/rendering/upload: what the principled shading needs to know of
-GGX, tabulated.
+"""Makes brdf_table.npy and edge_table.npy in splat_addon/rendering/shading_models: what the principled shading needs to
+know of GGX, tabulated.
 
     python -m splat_addon.reference.brdf_fit [--out FOLDER]
 
@@ -20,7 +20,7 @@ import numpy as np
 from rich.progress import track
 from scipy.optimize import minimize
 
-FOLDER = Path(__file__).resolve().parents[1] / "rendering" / "upload"
+FOLDER = Path(__file__).resolve().parents[1] / "rendering" / "shading_models"
 ROUGHNESS, ANGLES = 48, 32
 LEAST_ROUGHNESS = 0.03
 SIDE = 40  # samples along each side of the unit square

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from splat_addon.rendering.upload.brdf_table import brdf_table, edge_table
+from splat_addon.rendering.shading_models.brdf_table import brdf_table, edge_table
 
 
 @pytest.mark.parametrize(("row", "column"), [(47, 0), (30, 10), (16, 20)])

@@ -12,7 +12,7 @@ from functools import partial
 
 from ..plan.graph import Part, Texture
 from ..scene import Finish
-from ..upload.brdf_table import edge_texels
+from ..shading_models.brdf_table import edge_texels
 from ..upload.packing import MAX_FINISHES, finish_matrix
 from . import gbuffer, lights, materials, outputs
 from .drawing import LIGHTING_HOSTS, LIT_HOSTS, SPLAT_HOSTS

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The shading model "Principled" (Walter et al. 2007, Heitz et al. 2016)."""
 
-from ..upload.brdf_table import brdf_texels
+from .brdf_table import brdf_texels
 from .model import ShadingModel
 
 MODEL = ShadingModel(
