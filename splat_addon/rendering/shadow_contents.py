@@ -7,18 +7,15 @@ exports another one for each frame.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import fields
 from operator import attrgetter
-from typing import TYPE_CHECKING
 from weakref import ref
 
-from .scene import Instance, PolygonInstance
+from ..hierarchy import Hierarchy
+from .scene import Instance, Placed, PolygonInstance, Scene
 from .scene.camera import Camera
-from .shadow import casting
-
-if TYPE_CHECKING:
-    from .plan.executor import TileContext
-    from .plan.graph import Pass
+from .shadow import ShadowMap, casting
 
 #: Fields of instances that are compared in another way, or change nothing in a map.
 _APART = {"shape", "matrix_world", "stream", "materials", "light_set", "name", "index"}
@@ -28,12 +25,20 @@ _OF = {
 }
 
 
-def contents(tile: TileContext, p: Pass) -> tuple:
-    """All that the pass that draws a frame's shadow maps depends on, but for the camera of the picture."""
-    casters, slots = casting(tile.scene).shown, tile.identities.slots
-    each = [(ref(c.shape), c.matrix_world.tobytes(), _OF[type(c)](c), slots(c), _levels(tile, c)) for c in casters]
+def contents(
+    scene: Scene,
+    maps: Sequence[ShadowMap],
+    slots: Callable[[Placed], tuple[int, int]],
+    levels: Callable[[Instance], Hierarchy | None],
+) -> tuple:
+    """All of a scene that its shadow maps depend on, but for the camera of the picture.
+
+    slots: gives the numbers of an object's material slots. levels: gives the hierarchy of an instance, or None.
+    """
+    casters = casting(scene).shown
+    each = [(ref(c.shape), c.matrix_world.tobytes(), _OF[type(c)](c), slots(c), _levels(levels, c)) for c in casters]
     numbers = {placed: number for number, placed in enumerate(casters)}
-    maps = [
+    each_map = [
         (
             m.camera.matrix_world.tobytes(),
             _OF[Camera](m.camera),
@@ -42,11 +47,11 @@ def contents(tile: TileContext, p: Pass) -> tuple:
             m.is_smaller,
             *map(numbers.get, m.casters),
         )
-        for m in tile.plan.facts["shadow_maps"]
+        for m in maps
     ]
-    return p._replace(once=None, reason=""), tile.plan.choices, tile.settings, each, maps
+    return each, each_map
 
 
-def _levels(tile: TileContext, placed: Instance | PolygonInstance) -> ref | None:
-    own = tile.levels(placed) if isinstance(placed, Instance) else None
+def _levels(levels: Callable[[Instance], Hierarchy | None], placed: Placed) -> ref | None:
+    own = levels(placed) if isinstance(placed, Instance) else None
     return None if own is None else ref(own)

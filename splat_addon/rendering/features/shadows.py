@@ -82,7 +82,13 @@ def passes(planning):
         drawn = visibility.drawn("shadow_maps", why, own, planning, "shadow")
         opaque = [i for i in planning.scene.surfels if i.casts_shadow and not i.is_transparent]
         each = hidden_objects.looking("hidden_casters", FARTHEST) if hidden_objects.may_hide(planning, opaque) else None
-        yield drawn._replace(run=run, once=contents, each=each)
+        yield drawn._replace(run=run, once=_depends_on, each=each)
+
+
+def _depends_on(tile, p: Pass) -> tuple:
+    """All that the maps depend on, but for the camera of the picture."""
+    of_scene = contents(tile.scene, tile.plan.facts["shadow_maps"], tile.identities.slots, tile.levels)
+    return p._replace(once=None, reason=""), tile.plan.choices, tile.settings, of_scene
 
 
 def is_present(planning) -> bool:
