@@ -36,8 +36,25 @@ MAY_IMPORT = {
     "blender": {"surfels", "sampling", "rendering", "interchange", "streaming"},
 }
 #: `reference` reads rendering's data, never its passes.
-RENDERING_DATA = {"scene", "shadow", "settings", "frame", "view", "depth_range", "methods", "shading_models"}
+RENDERING_DATA = {"scene", "shadows.maps", "settings", "frame", "view", "depth_range", "methods", "shading_models"}
 RENDERING_DATA |= {"upload.atlas"}
+#: A plan asks the features, whose passes it consists of.
+PLAN_AND_FEATURES = {"plan", "features", "identity", "read_back"}
+#: The rooms of `rendering` from the bottom up. Imports go down; only within `PLAN_AND_FEATURES` they go sideways.
+RENDERING_FLOORS = (
+    {"background", "cryptomatte", "device", "methods", "shading_models"},
+    {"frame", "scene"},
+    {"settings", "depth_range"},
+    {"presets", "view"},
+    {"shadows"},
+    {"assembly"},
+    {"detail"},
+    {"culling", "upload"},
+    PLAN_AND_FEATURES,
+    {"renderer"},
+    {"viewport"},
+    {"__init__"},
+)
 #: foreign module -> where it may be imported
 HOMES = {
     "bpy": ("blender/",),
@@ -77,6 +94,18 @@ def test_imports_never_go_up(file):
             assert room(there) in MAY_IMPORT[here] | {here}, f"{file.name} imports {'.'.join(there)}"
             if (here, room(there)) == ("reference", "rendering"):
                 assert {there[1], ".".join(there[1:3])} & RENDERING_DATA, f"{file.name} imports {'.'.join(there)}"
+
+
+@pytest.mark.parametrize("file", sorted((PACKAGE / "rendering").rglob("*.py")), ids=str)
+def test_the_rooms_of_rendering_are_in_floors(file):
+    floor_of = {one: number for number, floor in enumerate(RENDERING_FLOORS) for one in floor}
+    here = room(file.relative_to(PACKAGE / "rendering").parts)
+    assert here in floor_of, f"{here} is on no floor of RENDERING_FLOORS."
+    for level, name in imports(file):
+        if not level or (there := resolved(file, level, name))[0] != "rendering":
+            continue
+        is_beside = there[1] == here or {here, there[1]} <= PLAN_AND_FEATURES
+        assert is_beside or floor_of[there[1]] < floor_of[here], f"{file.name} imports {'.'.join(there)}"
 
 
 @pytest.mark.parametrize("file", FILES, ids=str)

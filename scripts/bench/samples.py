@@ -18,7 +18,7 @@ from splat_addon import rendering
 from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.metrics import psnr
 from splat_addon.rendering import Lens, Panorama, Renderer, Settings, look_at, open_device
-from splat_addon.rendering.accumulation import moment_places
+from splat_addon.rendering.assembly.accumulation import moment_places
 
 DEVICES = ("standalone",)
 QUICK = {"size": 8, "splats": 500, "many": 16}

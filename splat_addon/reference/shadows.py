@@ -14,7 +14,7 @@ import numpy as np
 from ..rendering.scene import Scene
 from ..rendering.scene.camera import Camera
 from ..rendering.scene.light import Light
-from ..rendering.shadow import casting
+from ..rendering.shadows.maps import casting
 from .polygons import are_lit
 from .splats import Splats, eye_splats
 

@@ -4,15 +4,12 @@
 scene, camera, settings -> plan -> view -> passes on a device -> Frame
 """
 
-from .arrival import Arrival
 from .cryptomatte import Cryptomatte
 from .device import open_device
 from .frame import EMPTY_DEPTH, Frame
-from .pace import Pace
 from .plan.build import plan
 from .plan.frame_plan import FramePlan
 from .presets import PRESETS, Preset
-from .refinement import Refinement
 from .renderer import RenderCancelled, Renderer, Shown
 from .scene import Finish, Instance, Material, NormalTexture, PolygonInstance, Scene, SurfaceTexture
 from .scene.camera import Camera, look_at
@@ -25,6 +22,9 @@ from .scene.panorama import EquidistantFisheye, Equirectangular, EquisolidFishey
 from .scene.polygons import Polygons, make_polygons
 from .scene.ramp import Ramp
 from .settings import Settings
+from .viewport.arrival import Arrival
+from .viewport.pace import Pace
+from .viewport.refinement import Refinement
 
 __all__ = (
     "EMPTY_DEPTH",

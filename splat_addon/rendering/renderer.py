@@ -10,8 +10,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .accumulation import mean_frame, sample_blocks, sample_camera
+from .assembly.accumulation import mean_frame, sample_blocks, sample_camera
+from .assembly.panorama_faces import panorama_frame
 from .depth_range import clip_range
+from .detail.levels import forget_before, was_drawn
+from .detail.streamed import Streamed
 from .device import Device
 from .device.interface import Target, texture_bytes
 from .device.interface import Texture as DeviceTexture
@@ -19,8 +22,6 @@ from .features.outputs import PIXELS, check_samplers
 from .features.sample_sum import SUM
 from .frame import OUTPUTS, Frame
 from .identity import Identified, nearer
-from .levels import forget_before, was_drawn
-from .panorama_faces import panorama_frame
 from .plan.build import plan
 from .plan.executor import Execution, TileContext, texture_key
 from .plan.frame_plan import FramePlan
@@ -30,9 +31,8 @@ from .scene import Scene
 from .scene.camera import Camera
 from .scene.panorama import Panorama
 from .settings import Settings
-from .shadow import ShadowMap, among, casting
-from .shadow_receivers import Viewers, viewers
-from .streamed import Streamed
+from .shadows.maps import ShadowMap, among, casting
+from .shadows.receivers import Viewers, viewers
 from .upload.resources import Resources
 from .view import View, build_view
 

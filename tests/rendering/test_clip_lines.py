@@ -12,7 +12,8 @@ from splat_addon.reference import render_ewa, render_exact
 from splat_addon.reference.extremes import discs
 from splat_addon.reference.metrics import psnr
 from splat_addon.reference.triangles import render_triangles
-from splat_addon.rendering import Camera, Instance, Light, Material, Scene, Settings, levels, look_at, plan
+from splat_addon.rendering import Camera, Instance, Light, Material, Scene, Settings, look_at, plan
+from splat_addon.rendering.detail import levels
 from splat_addon.rendering.methods import METHODS
 from splat_addon.rendering.plan.executor import describe
 from splat_addon.rendering.upload.packing import pack_clip_lines

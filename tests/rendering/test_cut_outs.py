@@ -17,11 +17,11 @@ from splat_addon.rendering import (
     Scene,
     Settings,
     SurfaceTexture,
-    accumulation,
     look_at,
     make_polygons,
     plan,
 )
+from splat_addon.rendering.assembly import accumulation
 from splat_addon.rendering.methods import METHODS
 from splat_addon.rendering.plan.programs import composed
 

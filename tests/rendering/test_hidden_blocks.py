@@ -24,10 +24,10 @@ from splat_addon.rendering import (
     look_at,
     make_polygons,
 )
-from splat_addon.rendering.cover import COVER_CELL, Cover
+from splat_addon.rendering.culling.cover import COVER_CELL, Cover
+from splat_addon.rendering.culling.hidden_blocks import BlocksFrontToBack
+from splat_addon.rendering.detail.levels import hierarchy_of
 from splat_addon.rendering.features import hidden_objects, visibility
-from splat_addon.rendering.hidden_blocks import BlocksFrontToBack
-from splat_addon.rendering.levels import hierarchy_of
 from splat_addon.rendering.methods import METHODS
 from splat_addon.surfels import Surfels, concatenate
 from tests.rendering.left_out import ALL, are_equal, pictures

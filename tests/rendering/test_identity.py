@@ -20,7 +20,7 @@ from splat_addon.rendering import (
     Settings,
     plan,
 )
-from splat_addon.rendering.accumulation import mean_frame
+from splat_addon.rendering.assembly.accumulation import mean_frame
 from splat_addon.rendering.cryptomatte import added_up, murmur3_32, name_hash
 from splat_addon.rendering.identity import NUMBERED, Identities, nearest_numbers, tile_matte
 from splat_addon.rendering.methods import METHODS

@@ -17,10 +17,10 @@ from splat_addon.rendering import (
     PolygonInstance,
     Scene,
     Settings,
-    levels,
     look_at,
     make_polygons,
 )
+from splat_addon.rendering.detail import levels
 from splat_addon.sampling import DEFAULT_CREASE_ANGLE, Tolerance, TriangleMesh, sample_surface
 
 CHALK = (Material(roughness=1.0, ior=1.0),)

@@ -25,7 +25,7 @@ from splat_addon.rendering import (
     look_at,
     plan,
 )
-from splat_addon.rendering.levels import LEAST_SURFELS, hierarchy_before, hierarchy_of, replaced, was_drawn
+from splat_addon.rendering.detail.levels import LEAST_SURFELS, hierarchy_before, hierarchy_of, replaced, was_drawn
 from splat_addon.rendering.methods import METHODS
 from splat_addon.rendering.plan import executor
 from splat_addon.rendering.upload.storages import STORAGES

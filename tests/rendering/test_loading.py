@@ -12,11 +12,13 @@ import numpy as np
 import pytest
 
 from splat_addon.reference import scenes
-from splat_addon.rendering import Arrival, Environment, Refinement, Renderer, Settings, arrival, levels, look_at
-from splat_addon.rendering.levels import built_hierarchy
-from splat_addon.rendering.stand_in import spread, stand_in
+from splat_addon.rendering import Arrival, Environment, Refinement, Renderer, Settings, look_at
+from splat_addon.rendering.detail import levels
+from splat_addon.rendering.detail.levels import built_hierarchy
+from splat_addon.rendering.detail.stand_in import spread, stand_in
 from splat_addon.rendering.upload import loading
 from splat_addon.rendering.upload.loading import Loading
+from splat_addon.rendering.viewport import arrival
 from splat_addon.surfels import Surfels
 
 SIZE = (64, 48)

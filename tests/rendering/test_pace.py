@@ -9,7 +9,7 @@ import pytest
 
 from splat_addon.reference import scenes
 from splat_addon.rendering import Pace, Refinement, Renderer, Settings
-from splat_addon.rendering.pace import COARSEST, LEAST_STREAMED, LONGEST_SLICE, SLICE, WIDEST
+from splat_addon.rendering.viewport.pace import COARSEST, LEAST_STREAMED, LONGEST_SLICE, SLICE, WIDEST
 
 SIZE = (240, 160)
 CAMERA = scenes.torus(100, SIZE)[1]

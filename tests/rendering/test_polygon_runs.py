@@ -14,8 +14,8 @@ from splat_addon.rendering import (
     Settings,
     look_at,
     make_polygons,
-    polygon_runs,
 )
+from splat_addon.rendering.culling import polygon_runs
 from splat_addon.rendering.features import drawing
 
 SIZE = (64, 48)

@@ -11,11 +11,11 @@ import pytest
 
 from splat_addon.reference import scenes
 from splat_addon.rendering import Environment, Lens, Light, Pace, Refinement, Renderer, Scene, Settings, plan
-from splat_addon.rendering.accumulation import sample_camera
+from splat_addon.rendering.assembly.accumulation import sample_camera
 from splat_addon.rendering.features import drawing
 from splat_addon.rendering.plan import executor
 from splat_addon.rendering.plan.graph import Pause
-from splat_addon.rendering.shadow_receivers import viewers
+from splat_addon.rendering.shadows.receivers import viewers
 
 SETTINGS = Settings(method="quad", samples=4, outputs=("color",))
 

@@ -7,7 +7,7 @@ import pytest
 from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.metrics import psnr
 from splat_addon.rendering import RenderCancelled, Settings
-from splat_addon.rendering.accumulation import pixel_offset, sample_points
+from splat_addon.rendering.assembly.accumulation import pixel_offset, sample_points
 
 FLAT = {"method": "quad", "shading": "flat"}
 

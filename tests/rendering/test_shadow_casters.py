@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from splat_addon.reference import scenes
-from splat_addon.rendering import Camera, Instance, Light, Scene, Settings, look_at, plan, shadow
-from splat_addon.rendering.shadow_casters import hull_planes
+from splat_addon.rendering import Camera, Instance, Light, Scene, Settings, look_at, plan
+from splat_addon.rendering.shadows import maps
+from splat_addon.rendering.shadows.casters import hull_planes
 
 SIZE = (64, 48)
 SETTINGS = Settings(method="quad", supersampling=1, outputs=("color",), shadow_resolution=256)
@@ -49,8 +50,8 @@ def test_what_is_left_out_changes_no_picture(name, view, render, monkeypatch):
     scene, camera = balls(LIGHTS[name]), CAMERAS[view]
     bare = render(replace(scene, lights=(replace(LIGHTS[name], casts_shadow=False),)), camera, SETTINGS).color
     one, made = render(scene, camera, SETTINGS).color, plan(scene, camera, SETTINGS).facts["shadow_maps"]
-    monkeypatch.setattr(shadow, "used_texels", lambda camera, _: (0, 0, *camera.size))
-    monkeypatch.setattr(shadow, "in_the_way", lambda *arguments: np.ones(len(scene.surfels), bool))
+    monkeypatch.setattr(maps, "used_texels", lambda camera, _: (0, 0, *camera.size))
+    monkeypatch.setattr(maps, "in_the_way", lambda *arguments: np.ones(len(scene.surfels), bool))
     every = render(scene, camera, SETTINGS).color
     assert np.abs(bare - one).max() > 0.1
     assert min(len(one.casters) for one in made) < len(scene.surfels) - 5

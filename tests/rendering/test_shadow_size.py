@@ -24,9 +24,9 @@ from splat_addon.rendering import (
     look_at,
     make_polygons,
     plan,
-    shadow_receivers,
 )
-from splat_addon.rendering.shadow import LEAST_SIDE, enough
+from splat_addon.rendering.shadows import receivers
+from splat_addon.rendering.shadows.maps import LEAST_SIDE, enough
 from splat_addon.sampling import TriangleMesh, sample_mesh
 
 SETTINGS = Settings(outputs=("color",))
@@ -101,7 +101,7 @@ def full(monkeypatch):
 
     def made(make):
         with monkeypatch.context() as changed:
-            changed.setattr(shadow_receivers, "TEXELS_PER_PIXEL", math.inf)
+            changed.setattr(receivers, "TEXELS_PER_PIXEL", math.inf)
             return make()
 
     return made

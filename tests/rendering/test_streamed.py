@@ -24,9 +24,9 @@ from splat_addon.rendering import (
     Renderer,
     Settings,
 )
+from splat_addon.rendering.detail.streamed import Streamed
 from splat_addon.rendering.methods import METHODS
-from splat_addon.rendering.pace import WIDEST
-from splat_addon.rendering.streamed import Streamed
+from splat_addon.rendering.viewport.pace import WIDEST
 from splat_addon.streaming import Stream, write_blocks
 from splat_addon.streaming.stream import PART
 from splat_addon.surfels import OPAQUE, concatenate
@@ -203,8 +203,8 @@ def test_a_render_is_cancelled_while_it_reads(file, on_device):
 @pytest.fixture
 def slow(monkeypatch):
     """Reading gives almost nothing at a time, and views do not wait."""
-    monkeypatch.setattr("splat_addon.rendering.refinement._READING", 0.0)
-    monkeypatch.setattr("splat_addon.rendering.streamed._READING", 1e-6)
+    monkeypatch.setattr("splat_addon.rendering.viewport.refinement._READING", 0.0)
+    monkeypatch.setattr("splat_addon.rendering.detail.streamed._READING", 1e-6)
     monkeypatch.setattr("splat_addon.streaming.stream._AT_ONCE", 2)
 
 

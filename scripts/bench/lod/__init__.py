@@ -36,7 +36,7 @@ from measuring.timing import Spread, in_turn, wall
 from splat_addon.hierarchy import cut_blocks, entries_of
 from splat_addon.reference.metrics import mean_flip, psnr
 from splat_addon.rendering import Renderer, Settings, open_device, plan
-from splat_addon.rendering.levels import hierarchy_of, sight
+from splat_addon.rendering.detail.levels import hierarchy_of, sight
 from splat_addon.sampling import sample_mesh
 
 DEVICES = ("standalone",)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import bpy
 
-from ...rendering.frame_parts import joined_parts
+from ...rendering.assembly.frame_parts import joined_parts
 from ...sampling import joined_blocks, read_block, read_request
 from ..engine import final_render
 from ..export.camera import picture_size

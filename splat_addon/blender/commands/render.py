@@ -10,7 +10,7 @@ from pathlib import Path
 import bpy
 
 from ...rendering import Frame
-from ...rendering.frame_parts import Part, write_part
+from ...rendering.assembly.frame_parts import Part, write_part
 from ..engine import final_render
 from ..export.camera import picture_size
 from .pictures import (

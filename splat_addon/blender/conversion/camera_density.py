@@ -10,7 +10,7 @@ import numpy as np
 from mathutils import Matrix
 
 from ...rendering import Panorama
-from ...rendering.panorama_faces import cube_views
+from ...rendering.assembly.panorama_faces import cube_views
 from ...sampling import NotSeenError, Outline, camera_spacing
 from ..export.camera import final_camera
 

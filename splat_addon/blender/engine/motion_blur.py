@@ -10,7 +10,7 @@ from contextlib import contextmanager
 import bpy
 import numpy as np
 
-from ...rendering.accumulation import moment_places
+from ...rendering.assembly.accumulation import moment_places
 from ..ids import RENDER_SETTINGS
 
 #: position -> when the shutter opens relative to the frame, as a share of the exposure time

@@ -19,7 +19,7 @@ import bpy
 import numpy as np
 
 from ...rendering import Instance, Material, NormalTexture, PolygonInstance, Polygons, SurfaceTexture
-from ...rendering.levels import replaced
+from ...rendering.detail.levels import replaced
 from ...sampling import (
     DEFAULT_CREASE_ANGLE,
     STRETCHED_SHARE,

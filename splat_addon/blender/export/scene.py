@@ -14,7 +14,7 @@ import bpy
 import numpy as np
 
 from ...rendering import Instance, Light, Scene
-from ...rendering.levels import replaced
+from ...rendering.detail.levels import replaced
 from ...streaming import Stream
 from ...surfels import Surfels
 from ..conversion.shape_following import not_bent

@@ -19,7 +19,7 @@ import bpy
 import numpy as np
 
 from ...rendering.background import in_background
-from ...rendering.stand_in import LEFT_OUT, STAND_IN, spread, standing_in, widened
+from ...rendering.detail.stand_in import LEFT_OUT, STAND_IN, spread, standing_in, widened
 from ...surfels import Surfels, prepared, valid_surfels
 from ..geometry.attributes import (
     REST_FIELD,

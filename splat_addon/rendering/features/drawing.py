@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..culling.polygon_runs import triangle_runs
 from ..device.interface import Pipeline
 from ..device.interface import Texture as DeviceTexture
 from ..methods.method import RASTERIZERS
 from ..plan.graph import Pass, Pause
 from ..plan.uniforms import DRAW, std140
-from ..polygon_runs import triangle_runs
 from ..scene.light import MAX_LIGHT_SETS
 from ..upload.storages import STORAGES, get_storage
 from ..view import DrawItem

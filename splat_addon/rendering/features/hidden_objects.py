@@ -13,8 +13,8 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from ..cover import COVER_CELL, Cover
-from ..hidden_blocks import BlocksFrontToBack
+from ..culling.cover import COVER_CELL, Cover
+from ..culling.hidden_blocks import BlocksFrontToBack
 from ..methods import get_method
 from ..plan.graph import Part, Pass, Texture, of_samples
 from ..scene import Instance

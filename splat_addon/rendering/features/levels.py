@@ -8,7 +8,7 @@ the same instance with different cuts.
 
 from __future__ import annotations
 
-from .. import levels
+from ..detail import levels
 from ..plan.graph import Part
 from ..upload.cuts import NUMBERS_PER_ROW
 from . import lit_splats

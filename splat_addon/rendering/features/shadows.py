@@ -9,9 +9,9 @@ from dataclasses import replace
 from ..plan.graph import Part, Pass, Texture
 from ..scene.camera import Camera
 from ..scene.light import pack_lights
-from ..shadow import MAX_MAPS, atlas_size, map_ranges, pack_shadow_maps, shadow_maps
-from ..shadow_contents import contents
-from ..shadow_receivers import NEAREST_SHARE
+from ..shadows.contents import contents
+from ..shadows.maps import MAX_MAPS, atlas_size, map_ranges, pack_shadow_maps, shadow_maps
+from ..shadows.receivers import NEAREST_SHARE
 from ..view import View
 from . import hidden_objects, lit_splats, visibility
 from .drawing import LIT_HOSTS, SPLAT_HOSTS

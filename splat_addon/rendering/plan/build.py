@@ -13,7 +13,7 @@ from ..features import CHECKS, MARGINS, PARTS, PASSES, READ_BACK, depth_format, 
 from ..scene import Scene
 from ..scene.camera import PIXEL_VARIANCE, Camera
 from ..settings import Settings
-from ..shadow_receivers import Viewers
+from ..shadows.receivers import Viewers
 from ..upload.storages import get_storage
 from .frame_plan import FramePlan
 from .graph import Part, Pass, changed, trimmed

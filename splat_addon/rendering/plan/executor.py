@@ -12,11 +12,11 @@ from types import SimpleNamespace
 import numpy as np
 
 from ...hierarchy import Hierarchy, Sight, cut_blocks, entries_of
+from ..detail.levels import is_worth_preparing, sight
 from ..device.interface import Pipeline, Target
 from ..device.interface import Texture as DeviceTexture
 from ..features import ARRIVES, DRAWN, DRAWS, INPUTS, VALUES
 from ..identity import Identities
-from ..levels import is_worth_preparing, sight
 from ..methods import get_method
 from ..scene import Instance, Scene
 from ..scene.camera import Camera

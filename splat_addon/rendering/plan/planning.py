@@ -11,7 +11,7 @@ from ..scene import Scene
 from ..scene.camera import Camera
 from ..settings import Settings
 from ..shading_models import get_shading_model
-from ..shadow_receivers import Viewers
+from ..shadows.receivers import Viewers
 
 Found = TypeVar("Found")
 

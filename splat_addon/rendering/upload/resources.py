@@ -13,9 +13,9 @@ import numpy as np
 
 from ...hierarchy import Hierarchy
 from ...surfels import Surfels
+from ..detail.levels import built_hierarchy, hierarchy_before, hierarchy_of, keep_hierarchy, make_hierarchy
 from ..device import Device
 from ..device.interface import Pipeline, PipelineDescription, Texture
-from ..levels import built_hierarchy, hierarchy_before, hierarchy_of, keep_hierarchy, make_hierarchy
 from ..scene import Finish, Placed, SurfaceTexture
 from ..scene.polygons import Polygons, pack_polygon_bumps, pack_polygon_uvs, pack_polygons
 from .atlas import FORMAT, make_atlas

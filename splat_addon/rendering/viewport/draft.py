@@ -6,12 +6,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
-from .plan.graph import Pause
-from .renderer import Renderer, Shown
-from .scene import Scene
-from .scene.camera import Camera
-from .settings import Settings
-from .upload.loading import Loading
+from ..plan.graph import Pause
+from ..renderer import Renderer, Shown
+from ..scene import Scene
+from ..scene.camera import Camera
+from ..settings import Settings
+from ..upload.loading import Loading
 
 #: The method and the shading that have the shortest programs.
 _METHOD, _LIT_AS = "quad", {"principled": "phong"}

@@ -9,11 +9,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..hierarchy.cuts import Boxes, Split, distances
-from .levels import sight
-from .scene.camera import Camera
-from .scene.polygons import BLOCK
-from .view import DrawItem, View
+from ...hierarchy.cuts import Boxes, Split, distances
+from ..detail.levels import sight
+from ..scene.camera import Camera
+from ..scene.polygons import BLOCK
+from ..view import DrawItem, View
 
 #: For fewer triangles, looking costs more than it may save.
 _LEAST_TRIANGLES = 4 * BLOCK

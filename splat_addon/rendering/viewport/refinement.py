@@ -6,14 +6,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from .accumulation import sample_camera
+from ..assembly.accumulation import sample_camera
+from ..plan.graph import Pause
+from ..renderer import Renderer, Shown, Tile
+from ..scene import Scene
+from ..scene.camera import Camera
+from ..settings import Settings
+from ..shadows.receivers import viewers
 from .pace import Pace
-from .plan.graph import Pause
-from .renderer import Renderer, Shown, Tile
-from .scene import Scene
-from .scene.camera import Camera
-from .settings import Settings
-from .shadow_receivers import viewers
 
 #: Seconds that a picture waits for streamed surfels; what is missing then comes later.
 _READING = 0.02

@@ -7,9 +7,9 @@ from weakref import WeakSet
 
 import numpy as np
 
-from ..clip_lines import CLIP_FIELDS
-from ..large_surfels import LARGE_WEIGHT, are_large
-from ..surfels import Surfels
+from ...clip_lines import CLIP_FIELDS
+from ...large_surfels import LARGE_WEIGHT, are_large
+from ...surfels import Surfels
 
 #: Surfels of all stand-ins of a view together.
 STAND_IN = 1 << 16

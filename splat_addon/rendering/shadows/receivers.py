@@ -13,11 +13,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .depth_range import seen_by, visible_space
+from ..depth_range import seen_by, visible_space
+from ..scene import Scene
+from ..scene.camera import Camera
+from ..scene.light import MAX_SUN_HALF_ANGLE, Light
 from .hexahedra import places_in_pyramid
-from .scene import Scene
-from .scene.camera import Camera
-from .scene.light import MAX_SUN_HALF_ANGLE, Light
 
 #: A map has at least this many texels along the smallest pixel that looks it up, or as many as the settings allow.
 #: Where its size changes, shadows move by parts of a texel, an eighth of a pixel, which cannot be seen.

@@ -12,12 +12,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .depth_range import beyond
-from .scene import Placed, Scene
-from .scene.camera import Camera, look_at
-from .scene.light import MAX_SUN_HALF_ANGLE, Light
-from .shadow_casters import in_the_way
-from .shadow_receivers import (
+from ..depth_range import beyond
+from ..scene import Placed, Scene
+from ..scene.camera import Camera, look_at
+from ..scene.light import MAX_SUN_HALF_ANGLE, Light
+from ..view import View
+from .casters import in_the_way
+from .receivers import (
     FILTER_REACH,
     Receivers,
     Viewers,
@@ -28,7 +29,6 @@ from .shadow_receivers import (
     together,
     used_texels,
 )
-from .view import View
 
 #: Maximum number of maps in the atlas; the last lights cast no shadow if there are more.
 MAX_MAPS = 64

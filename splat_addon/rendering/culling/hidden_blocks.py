@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..hierarchy import are_facing
-from ..hierarchy.cuts import Boxes
+from ...hierarchy import are_facing
+from ...hierarchy.cuts import Boxes
+from ..view import DrawItem
 from .cover import Cover
-from .view import DrawItem
 
 #: A filter may show a block's splats up to this many pixels beside the block's box.
 _BESIDE = 3

@@ -17,9 +17,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from .frame import Frame
-from .scene.camera import Camera
-from .settings import NEAREST, OUTPUTS
+from ..frame import Frame
+from ..scene.camera import Camera
+from ..settings import NEAREST, OUTPUTS
 
 #: Arrays of a frame that are means over its samples.
 _MEANS = tuple(name for name in OUTPUTS if name not in (*NEAREST, "cryptomatte"))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .scene.camera import Camera
+from ..scene.camera import Camera
 
 #: Samples along each side of a cell.
 COVER_CELL = 4

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..scene.light import Light
 from .hexahedra import EDGES, face_planes, planes
-from .scene.light import Light
-from .shadow_receivers import FILTER_REACH, Receivers
+from .receivers import FILTER_REACH, Receivers
 
 #: For fewer objects, looking costs more than it may save.
 _LEAST_OBJECTS = 4

@@ -12,11 +12,11 @@ from weakref import WeakKeyDictionary, WeakSet
 
 import numpy as np
 
-from ..hierarchy import Hierarchy, Sight, Split, Told, build_hierarchy, refit_hierarchy
-from ..large_surfels import SAMPLE_SIZE
-from ..surfels import Surfels
-from .scene import Instance, Scene
-from .scene.camera import Camera
+from ...hierarchy import Hierarchy, Sight, Split, Told, build_hierarchy, refit_hierarchy
+from ...large_surfels import SAMPLE_SIZE
+from ...surfels import Surfels
+from ..scene import Instance, Scene
+from ..scene.camera import Camera
 from .stand_in import STAND_INS
 
 #: For fewer surfels than this a cut saves less than it costs.

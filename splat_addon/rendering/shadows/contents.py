@@ -12,10 +12,10 @@ from dataclasses import fields
 from operator import attrgetter
 from weakref import ref
 
-from ..hierarchy import Hierarchy
-from .scene import Instance, Placed, PolygonInstance, Scene
-from .scene.camera import Camera
-from .shadow import ShadowMap, casting
+from ...hierarchy import Hierarchy
+from ..scene import Instance, Placed, PolygonInstance, Scene
+from ..scene.camera import Camera
+from .maps import ShadowMap, casting
 
 #: Fields of instances that are compared in another way, or change nothing in a map.
 _APART = {"shape", "matrix_world", "stream", "materials", "light_set", "name", "index"}

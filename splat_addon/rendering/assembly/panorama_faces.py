@@ -12,12 +12,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..frame import EMPTY_DEPTH, Frame
+from ..scene.camera import Camera
+from ..scene.panorama import Panorama
+from ..settings import NEAREST, OUTPUTS, Settings, held_arrays
+from ..shadows.receivers import Viewers
 from .accumulation import pixel_offset, sample_camera, sample_points
-from .frame import EMPTY_DEPTH, Frame
-from .scene.camera import Camera
-from .scene.panorama import Panorama
-from .settings import NEAREST, OUTPUTS, Settings, held_arrays
-from .shadow_receivers import Viewers
 
 #: (a sample's camera, the cameras that its shadow maps serve, settings, progress) -> Frame
 Draw = Callable[[Camera, Viewers, Settings, object], Frame]

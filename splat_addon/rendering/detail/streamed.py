@@ -14,15 +14,15 @@ from time import perf_counter
 
 import numpy as np
 
-from ..hierarchy import Sight
-from ..streaming import Stream
-from ..streaming.stream import Gathered, Seen
+from ...hierarchy import Sight
+from ...streaming import Stream
+from ...streaming.stream import Gathered, Seen
+from ..assembly.panorama_faces import DENSITY
+from ..scene import Instance, Scene
+from ..scene.camera import Camera
+from ..scene.panorama import Panorama
+from ..settings import Settings
 from .levels import sight
-from .panorama_faces import DENSITY
-from .scene import Instance, Scene
-from .scene.camera import Camera
-from .scene.panorama import Panorama
-from .settings import Settings
 
 #: Seconds of reading for the first set of a view.
 _READING = 0.03

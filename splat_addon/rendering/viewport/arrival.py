@@ -8,15 +8,15 @@ from collections.abc import Generator, Iterator
 from dataclasses import replace
 from weakref import WeakKeyDictionary, WeakSet
 
-from ..surfels import Surfels
+from ...surfels import Surfels
+from ..detail.stand_in import STAND_IN, stand_in
+from ..renderer import Shown
+from ..scene import Scene
+from ..scene.camera import Camera
+from ..settings import Settings
+from ..upload.loading import Loading, NotYet
 from .draft import Draft
 from .refinement import Refinement
-from .renderer import Shown
-from .scene import Scene
-from .scene.camera import Camera
-from .settings import Settings
-from .stand_in import STAND_IN, stand_in
-from .upload.loading import Loading, NotYet
 
 #: Least surfels that stand for a set, and for one of few sets.
 _LEAST, _LEAST_OF_FEW = 1 << 6, 1 << 11

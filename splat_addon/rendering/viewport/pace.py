@@ -8,8 +8,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from time import perf_counter
 
-from .scene.camera import Camera
-from .settings import Settings
+from ..scene.camera import Camera
+from ..settings import Settings
 
 #: The largest tolerance of a moving view, in pixels.
 COARSEST = 16.0

@@ -14,10 +14,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..array_files import opened_arrays
-from .cryptomatte import Cryptomatte
-from .frame import Frame
-from .settings import OUTPUTS
+from ...array_files import opened_arrays
+from ..cryptomatte import Cryptomatte
+from ..frame import Frame
+from ..settings import OUTPUTS
 
 _VERSION = 1
 
