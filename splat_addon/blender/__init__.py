@@ -19,6 +19,7 @@ from .ui import (
     report_panel,
     sidebar,
     view_layer_panels,
+    world_panels,
 )
 
 #: In registration order: modules come before those that refer to them.
@@ -35,6 +36,7 @@ MODULES = (
     camera_panels,
     object_panels,
     view_layer_panels,
+    world_panels,
     mesh_sampling_settings,
     mesh_settings,
     preferences,

@@ -8,6 +8,7 @@ import numpy as np
 from ..rendering.scene import Scene
 from ..rendering.scene.camera import Camera
 from ..rendering.scene.environment import LEVEL_SIDE, LEVELS, Environment
+from ..rendering.scene.picture_sun import REACH
 
 
 class WorldLight:
@@ -15,10 +16,11 @@ class WorldLight:
 
     def __init__(self, scene: Scene, camera: Camera):
         self._tint, self._environment = np.array(scene.world), scene.environment
+        self._sun = scene.picture_sun
         self._seen, self._seen_environment = np.array(scene.seen_world), scene.seen_environment
         if self._environment is not None:
             self._to_picture = self._environment.rotation @ camera.matrix_world[:3, :3]
-            texels = self._environment.level_texels()
+            texels = self._environment.level_texels(self._sun)
             self._levels = texels.reshape(-1, *2 * texels.shape[1:2], 4)[..., :3].astype(np.float64)
 
     def background(self, direction: np.ndarray) -> np.ndarray:
@@ -42,7 +44,16 @@ class WorldLight:
         share = np.clip((roughness - levels[k]) / (levels[k + 1] - levels[k]), 0, 1)[:, None]
         blurred = _level_at(self._levels, k, toward) * (1 - share) + _level_at(self._levels, k + 1, toward) * share
         sharpness = np.clip(1 - roughness / levels[0], 0, 1)[:, None]
-        return self._tint * (_image_at(self._environment, toward) * sharpness + blurred * (1 - sharpness))
+        return self._tint * (self._lighting_at(toward) * sharpness + blurred * (1 - sharpness))
+
+    def _lighting_at(self, toward: np.ndarray) -> np.ndarray:
+        """(n, 3) what lights of the picture, which is all but its sun."""
+        radiance = _image_at(self._environment, toward)
+        if self._sun is None:
+            return radiance
+        is_near = toward @ self._sun.middle > np.cos(REACH)
+        brightest = np.where(is_near, radiance.max(axis=1), 0)
+        return radiance * (self._sun.limit / np.maximum(brightest, self._sun.limit))[:, None]
 
     def _turned(self, direction: np.ndarray) -> np.ndarray:
         turned = direction @ self._to_picture.T

@@ -26,6 +26,7 @@ VARIABLES = {
     "view layer": {name: ("ViewLayer",) for name in ("view_layer", "view_layer_eval", "layer")},
     "object": {"object_": ("Object",), "owner": ("Object",), "ob": ("Object",), "object": ("Object",)},
     "material": {"material": ("Material",), "mat": ("Material",)},
+    "world": {"world": ("World",)},
 }
 
 #: kind of data -> the tabs of the properties editor that are searched for its settings.
@@ -36,6 +37,7 @@ TABS = {
     "view layer": {"view_layer"},
     "object": {"object"},
     "material": {"material"},
+    "world": {"world"},
 }
 
 #: kind of data -> the modules that read it to draw a picture
@@ -53,6 +55,7 @@ READERS = {
     ),
     "object": ("export/scene", "export/live_meshes"),
     "material": ("export/shading", "materials/material_surfaces"),
+    "world": ("export/world", "export/world_shaders"),
 }
 
 #: What is read but is no setting: names, identities, results, and what stands in the outliner, the timeline or the
@@ -87,7 +90,7 @@ def reads(kind: str) -> set[str]:
     return found
 
 
-def visible_panels(tabs=frozenset({"data", "render", "output", "view_layer", "object", "material"})):
+def visible_panels(tabs=frozenset({"data", "render", "output", "view_layer", "object", "material", "world"})):
     """The panel classes that these tabs of the properties editor may show for this engine."""
     panels = {p.__name__: p for p in bpy.types.Panel.__subclasses__()}
     panels |= {p.__name__: p for p in _subclasses(bpy.types.Panel)}

@@ -9,7 +9,7 @@ import pytest
 from splat_addon.reference.brdf import dot, mean_direction, specular_term, unit
 from splat_addon.reference.world import WorldLight
 from splat_addon.rendering import Camera, Environment, Scene
-from splat_addon.rendering.scene.environment import equirectangular_directions
+from splat_addon.rendering.scene.equirectangular import equirectangular_directions
 
 ROWS = 48
 TRIALS = 200

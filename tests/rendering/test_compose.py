@@ -21,6 +21,7 @@ CHOICES = {
     "samples",
     "background",
     "world_light",
+    "lighting_picture",
 }
 CHOICES |= {"shadow_taps", "polygon_share", "polygon_blend", "sides", "rest_opacity", "faces"}
 #: Files of shaders/lib that two methods have in common.

@@ -9,7 +9,8 @@ import pytest
 from splat_addon.reference import render_exact
 from splat_addon.reference.extremes import discs
 from splat_addon.rendering import Camera, Environment, Renderer, Scene, Settings, plan
-from splat_addon.rendering.scene.environment import LEVEL_SIDE, LEVELS, equirectangular_directions, level_directions
+from splat_addon.rendering.scene.environment import LEVEL_SIDE, LEVELS, level_directions
+from splat_addon.rendering.scene.equirectangular import equirectangular_directions
 
 CAMERA = Camera.perspective(np.eye(4), 1.0, (16, 16), near=0.1, far=100)
 

@@ -24,7 +24,7 @@ from splat_addon.rendering import (
     look_at,
     plan,
 )
-from splat_addon.rendering.scene.environment import equirectangular_directions
+from splat_addon.rendering.scene.equirectangular import equirectangular_directions
 from splat_addon.rendering.shading_models import SHADING_MODELS
 from splat_addon.surfels import Surfels
 

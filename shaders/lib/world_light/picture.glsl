@@ -2,7 +2,7 @@
 //             which makes the textures; Blender's Environment Texture (the equirectangular map).
 // Summary: the light of a world image on a surface.
 
-#include "lib/environment_image.glsl"
+#include "lib/lighting_picture/{lighting_picture}.glsl"
 
 const int LEVEL_SIDE = 32;
 const int BLURRED_LEVELS = 5;
@@ -29,7 +29,7 @@ vec3 sent_irradiance(vec3 normal) {  // over pi
 vec3 sent_reflection(vec3 direction, float roughness) {
   vec3 toward = mat3(frame.to_environment) * direction;
   if (roughness < BLURRED_ROUGHNESS[0]) {
-    vec3 sharp = environment_image_at(toward);
+    vec3 sharp = lighting_picture_at(toward);
     return frame.world.rgb * mix(sharp, environment_level_at(0, toward), roughness / BLURRED_ROUGHNESS[0]);
   }
   int level = 0;

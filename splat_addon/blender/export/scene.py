@@ -188,9 +188,9 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
     sampled, polygons = live_meshes.instances(
         depsgraph, density_of_meshes(bpy_scene), are_meshes_texture_mapped(bpy_scene), notes
     )
-    sky = store.world.read(_world_of(depsgraph), notes)
     lights = (replace(light, receivers=light_sets.lit_by(number)) for number, light in enumerate(lights))
-    return Scene((*surfels, *sampled), tuple(lights), polygons=tuple(polygons), **sky), notes
+    things = Scene((*surfels, *sampled), tuple(lights), polygons=tuple(polygons))
+    return store.world.around(things, _world_of(depsgraph), notes), notes
 
 
 def _world_of(depsgraph: bpy.types.Depsgraph) -> bpy.types.World | None:

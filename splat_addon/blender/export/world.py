@@ -1,17 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Converts Blender's world to a uniform radiance, or to an environment if its background is an image, and to what the
-camera sees of it if that differs."""
+"""Converts Blender's world to a uniform radiance, or to an environment if its background is an image, to its
+sun, and to what the camera sees of it if that differs."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import bpy
 import numpy as np
 from mathutils import Euler
 
-from ...rendering import Environment
+from ...rendering import Environment, Scene
 from ...rendering.device.interface import MAX_TEXTURE_EDGE
+from ...rendering.scene.sun_apart import sun_apart
 from ..materials.node_trees import uses_nodes
 from ..materials.surface_shaders import Part
 from ..materials.texture_images import UnreadableError, fingerprint, linear_pixels, settings_of
@@ -32,6 +34,11 @@ class WorldStore:
     def begin_frame(self, is_edited: bool) -> None:
         """Start a frame. is_edited: the image's pixels may differ, as after it was reloaded or saved."""
         self._is_doubted |= is_edited
+
+    def around(self, scene: Scene, world: bpy.types.World | None, notes) -> Scene:
+        """The scene in that world, whose sun is a light if the world asks for its shadow."""
+        scene = replace(scene, **self.read(world, notes))
+        return sun_apart(scene, world.sun_threshold) if world is not None and world.use_sun_shadow else scene
 
     def read(self, world: bpy.types.World | None, notes) -> dict[str, Any]:
         """The fields of a `Scene` that describe its world, which is black if there is none."""

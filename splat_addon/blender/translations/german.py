@@ -614,6 +614,8 @@ GERMAN = {
     "Selected Only": "Nur Auswahl",
     "Shading": "Schattierung",
     "Shadow": "Schatten",
+    "Sun": "Sonne",
+    "Threshold": "Schwellenwert",
     "Shadows": "Schatten",
     "Shared by all lights": "Für alle Lichter gemeinsam",
     "Show with Surfel Splatting": "Mit Surfel Splatting zeigen",

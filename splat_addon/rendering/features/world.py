@@ -3,9 +3,12 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ..plan.graph import Part, Pass, fill_all
+from ..scene.picture_sun import REACH
 from . import outputs
 from .drawing import LIGHTING_HOSTS
 
@@ -16,17 +19,32 @@ def _to_environment(tile) -> np.ndarray:
     return matrix
 
 
+def _levels(tile):
+    scene = tile.scene
+    if scene.picture_sun is None:
+        return tile.resources.kept(scene.environment, scene.environment.level_texels)
+
+    def levels_without_sun() -> np.ndarray:
+        return scene.environment.level_texels(scene.picture_sun)
+
+    return tile.resources.kept(scene.picture_sun, levels_without_sun)
+
+
 VALUES = {
     "world": ("vec4", lambda tile: (*tile.scene.world, 1.0)),
     "background": ("vec4", lambda tile: (*tile.scene.seen_world, 0.0 if tile.settings.transparent_film else 1.0)),
     "to_environment": ("mat4", _to_environment),
+    "picture_sun": ("vec4", lambda tile: (*tile.scene.picture_sun.middle, tile.scene.picture_sun.limit)),
 }
+CONSTANTS = {"SUN_REACH_COSINE": math.cos(REACH)}
 INPUTS = {
     "environment_image": lambda t: t.resources.kept(t.scene.environment, t.scene.environment.image_texels),
-    "environment_levels": lambda t: t.resources.kept(t.scene.environment, t.scene.environment.level_texels),
+    "environment_levels": _levels,
 }
 _SHOWN = Part("world", inputs=("environment_image",), choices=(("background", "picture"),))
 _LIGHTS = Part("world", inputs=("environment_image", "environment_levels"), choices=(("world_light", "picture"),))
+#: A light stands for the sun of the picture, which does not light a second time.
+_WITHOUT_SUN = Part("world", choices=(("lighting_picture", "without_sun"),))
 
 
 def passes(planning):
@@ -51,6 +69,8 @@ def parts(planning, p):
         yield _SHOWN
     if p.host in LIGHTING_HOSTS and planning.model.has_world:
         yield _LIGHTS
+        if planning.scene.picture_sun is not None:
+            yield _WITHOUT_SUN
 
 
 def is_shown(planning) -> bool:

@@ -43,6 +43,7 @@ DEFAULTS = {
     "samples": "each",
     "background": "even",
     "world_light": "even",
+    "lighting_picture": "whole",
     "shadow_taps": "even",
     "polygon_share": "compared",
     "polygon_blend": "attributes",

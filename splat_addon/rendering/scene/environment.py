@@ -8,10 +8,12 @@ Meyer et al. 2010, "On Floating-Point Normal Vectors" (the octahedral map that s
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
+from .equirectangular import equirectangular_directions
+from .picture_sun import PictureSun, brightest_place, excess_of, sun_in
 from .texels import opaque_texels
 
 #: Roughness of each blurred level; below the first, the image itself is mixed in. The last level is for matt surfaces.
@@ -48,36 +50,58 @@ class Environment:
         """(h, w, 4) float32: the image in the layout of a texture."""
         return opaque_texels(self.pixels)
 
-    def level_texels(self) -> np.ndarray:
+    def level_texels(self, sun: PictureSun | None = None) -> np.ndarray:
         """(6 * 34, 34, 4) float32: the levels, stacked vertically; the last is the irradiance of a matt surface over
-        pi."""
-        return self._levels
+        pi. sun: what is left out of the picture."""
+        maps = self._levels[0] if sun is None else self._levels[0] - self._levels_of(sun)
+        side = LEVEL_SIDE + 2
+        return opaque_texels(maps.astype(np.float32).reshape(-1, side, 3))
+
+    def sun_above(self, limit: float) -> PictureSun | None:
+        """The sun of what the picture has above this radiance, if it has one: see `picture_sun`. The same object as
+        long as the limit is the same."""
+        if self._sun and self._sun[0] == limit:
+            return self._sun[1]
+        place, (_, share) = self._brightest_place, equirectangular_directions(self._blurrable.shape[:2])
+        mean = share @ self._blurrable.reshape(-1, 3).sum(axis=1) / (4 * np.pi)
+        self._sun[:] = limit, sun_in(self.pixels, place, limit, mean) if place is not None else None
+        return self._sun[1]
 
     @cached_property
-    def _levels(self) -> np.ndarray:
-        pixels = reduced(_with_pixels_all_around(self.pixels), BLURRED_ROWS)
+    def _sun(self) -> list:
+        """The last limit, and its sun."""
+        return []
+
+    @cached_property
+    def _brightest_place(self) -> np.ndarray | None:
+        mean = float(self._blurrable.max(axis=2).mean())
+        return brightest_place(self.pixels, _step(self.pixels, BLURRED_ROWS), mean)
+
+    @cached_property
+    def _blurrable(self) -> np.ndarray:
+        """(h, w, 3) the image with as few pixels as suffice for levels."""
+        return reduced(self.pixels, BLURRED_ROWS)
+
+    @cached_property
+    def _levels(self) -> tuple[np.ndarray, np.ndarray]:
+        """(6, 34 * 34, 3) the levels, and (6, 34 * 34, 1) the sums of their weights."""
+        pixels = _with_pixels_all_around(self._blurrable)
+        sums, weights = _sums(pixels.reshape(-1, 3), *equirectangular_directions(pixels.shape[:2]))
+        return sums / weights, weights
+
+    def _levels_of(self, sun: PictureSun) -> np.ndarray:
+        """(6, 34 * 34, 3) what a sun adds to the levels."""
+        excess, pixels = excess_of(self.pixels, sun.middle, sun.limit), np.zeros(self._blurrable.shape)
+        step = _step(self.pixels, BLURRED_ROWS)
+        rows, columns = excess.rows // step, excess.columns // step
+        is_whole = np.ix_(rows < len(pixels), columns < pixels.shape[1])
+        at = rows[rows < len(pixels), None], columns[columns < pixels.shape[1]]
+        np.add.at(pixels, at, excess.radiance[is_whole] / step**2)
+        pixels = _with_pixels_all_around(pixels)
         directions, share = equirectangular_directions(pixels.shape[:2])
-        toward = level_directions()
-        cosines = toward.reshape(-1, 3) @ directions.T
-        lit = np.maximum(cosines, 0) * share
-        maps = [_blurred(lit * _lobe(cosines, roughness), pixels) for roughness in LEVELS]
-        maps.append(_blurred(lit, pixels))
-        texels = np.ones((len(maps), *toward.shape[:2], 4), np.float32)
-        texels[..., :3] = np.reshape(maps, (*texels.shape[:3], 3))
-        return texels.reshape(-1, toward.shape[1], 4)
-
-
-def equirectangular_directions(shape: tuple[int, int]) -> tuple[np.ndarray, np.ndarray]:
-    """(h w, 3) unit directions of a picture's pixels, and (h w,) the solid angle of each."""
-    rows, columns = shape
-    latitude = ((np.arange(rows) + 0.5) / rows - 0.5) * np.pi
-    longitude = (0.5 - (np.arange(columns) + 0.5) / columns) * 2 * np.pi
-    around = np.stack([np.cos(longitude), np.sin(longitude)], axis=1)
-    directions = np.empty((rows, columns, 3))
-    directions[..., :2] = np.cos(latitude)[:, None, None] * around
-    directions[..., 2] = np.sin(latitude)[:, None]
-    edges = np.sin(np.linspace(-0.5, 0.5, rows + 1) * np.pi)
-    return directions.reshape(-1, 3), np.repeat(np.diff(edges) * 2 * np.pi / columns, columns)
+        flat = pixels.reshape(-1, 3)
+        own = flat.any(axis=1)
+        return _sums(flat[own], directions[own], share[own])[0] / self._levels[1]
 
 
 def level_directions() -> np.ndarray:
@@ -97,11 +121,17 @@ def level_directions() -> np.ndarray:
 
 def reduced(pixels: np.ndarray, rows: int) -> np.ndarray:
     """The image reduced to about `rows` rows, each pixel the mean of a block; unchanged if it has no more rows."""
-    step = max(pixels.shape[0] // rows, 1)
+    step = _step(pixels, rows)
     h, w = (n // step for n in pixels.shape[:2])
-    if min(h, w) == 0 or step == 1:
+    if step == 1:
         return pixels
     return pixels[: h * step, : w * step].reshape(h, step, w, step, 3).mean(axis=(1, 3), dtype=np.float64)
+
+
+def _step(pixels: np.ndarray, rows: int) -> int:
+    """Rows and columns of a block of `reduced`."""
+    step = max(pixels.shape[0] // rows, 1)
+    return step if pixels.shape[1] >= step else 1
 
 
 #: Minimum rows and columns that an image is blurred from: with few pixels, a surface might face none.
@@ -122,5 +152,11 @@ def _lobe(cosines: np.ndarray, roughness: float) -> np.ndarray:
     return a2 / (half2 * (a2 - 1) + 1) ** 2
 
 
-def _blurred(weights: np.ndarray, pixels: np.ndarray) -> np.ndarray:
-    return weights @ pixels.reshape(-1, 3) / weights.sum(axis=1, keepdims=True)
+def _sums(pixels: np.ndarray, directions: np.ndarray, share: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(6, 34 * 34, 3) for each level and direction the sum of pixels (n, 3) times weights, and (6, 34 * 34, 1) the sum
+    of the weights. directions: (n, 3) of the pixels. share: (n,) solid angles."""
+    cosines = level_directions().reshape(-1, 3) @ directions.T
+    lit = np.maximum(cosines, 0) * share
+    lobes = (*(partial(_lobe, cosines, roughness) for roughness in LEVELS), lambda: 1.0)
+    found = [(weights @ pixels, weights.sum(axis=1, keepdims=True)) for weights in (lit * lobe() for lobe in lobes)]
+    return tuple(np.stack(each) for each in zip(*found, strict=True))

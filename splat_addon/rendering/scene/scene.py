@@ -20,6 +20,7 @@ from .camera import Camera
 from .environment import Environment
 from .light import MAX_LIGHT_SETS, Light
 from .material import Material, NormalTexture, SurfaceTexture
+from .picture_sun import PictureSun
 from .polygons import Polygons
 
 #: Sample size for heuristics that affect speed, never correctness.
@@ -300,6 +301,8 @@ class Scene:
     polygons: `PolygonInstance`s, or bare `Polygons`, among the surfels.
     background: (3,) radiance that is seen behind everything; None: that of the world. hides_environment: whether it is
         seen without the environment, which still lights.
+    picture_sun: the part of the environment that is seen but does not light, because a light stands for it
+        (`sun_apart`).
     """
 
     surfels: tuple[Instance, ...] = ()
@@ -309,6 +312,7 @@ class Scene:
     polygons: tuple[PolygonInstance, ...] = ()
     background: tuple[float, float, float] | None = None
     hides_environment: bool = False
+    picture_sun: PictureSun | None = None
 
     def __post_init__(self):
         instances = tuple(s if isinstance(s, Instance) else Instance(s) for s in self.surfels)

@@ -263,10 +263,11 @@ WALKED = {
          "displacement_method", "max_vertex_displacement", "volume_intersection_method"},
     ),
     "World": (
-        {"color", "use_nodes"},
+        {"color", "use_nodes", "sun_threshold", "use_sun_shadow"},
         set(),  # the table names a world's volume and its ray visibility, which are not its own properties
-        # of EEVEE's probes, its sun and its volumes; a light group is a pass, which the view layer asks for
-        {"use_eevee_finite_volume", "probe_resolution", "sun_threshold", "sun_angle", "use_sun_shadow", "lightgroup",
+        # of EEVEE's probes, its shadow maps and its volumes; the sun is as wide as in the picture; a light group is a
+        # pass, which the view layer asks for
+        {"use_eevee_finite_volume", "probe_resolution", "sun_angle", "lightgroup",
          "sun_shadow_maximum_resolution", "sun_shadow_filter_radius", "use_sun_shadow_jitter",
          "sun_shadow_jitter_overblur", "name"},
     ),
