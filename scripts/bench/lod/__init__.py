@@ -9,7 +9,7 @@ Of sets larger than --every, only the cut is drawn.
 drawn: surfels in the cut. cut/all: the time of the cut frame, divided by that of all. following: the time of a cut
     frame that shares the shadow maps of the frame before; the others draw theirs. bare/cut: the time to draw the same
     splats into nothing but a depth buffer, divided by the cut frame; no frame can be faster.
-decided: the share of the cut frame's time that goes into planning and choosing surfels while the camera moves.
+decided: the share of a cut frame's time that goes into planning it and choosing its surfels while the camera moves.
 PSNR, FLIP: the cut compared with all. uploads: of a second frame of the same view.
 
 A dolly moves the camera away to four times the distance in 300 pictures, of which some in the middle are drawn. Its
@@ -23,9 +23,11 @@ The plot has the frames without shadow, and lines for other programs at the rate
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from dataclasses import replace
 from functools import partial
 from time import perf_counter
+from unittest.mock import patch
 
 import numpy as np
 
@@ -33,16 +35,18 @@ from bench.lod.plots import plot_times
 from measuring.models import in_view, load
 from measuring.timer_queries import has_timer_queries, timed_draws
 from measuring.timing import Spread, in_turn, wall
-from splat_addon.hierarchy import cut_blocks, entries_of
 from splat_addon.reference.metrics import mean_flip, psnr
-from splat_addon.rendering import Renderer, Settings, open_device, plan
-from splat_addon.rendering.detail.levels import hierarchy_of, sight
+from splat_addon.rendering import Renderer, Settings, open_device, renderer
+from splat_addon.rendering.detail.levels import hierarchy_of
+from splat_addon.rendering.plan import executor
 from splat_addon.sampling import sample_mesh
 
 DEVICES = ("standalone",)
 QUICK = {"size": 64, "resolutions": [60], "model": "bunny.obj.gz", "dolly": 3}
 #: name -> the eye in half diagonals of the model's box
 VIEWS = {"filling": (1.2, 0.7, 2.6), "tiny": (76.0, 44.0, 165.0)}
+#: module -> its functions that plan a frame or choose its surfels; none of them calls another
+DECIDING = {renderer: ("plan",), executor: ("sight", "cut_blocks", "entries_of")}
 COLUMNS = (
     *"surfels view shadow drawn all,_ms cut,_ms following,_ms cut/all bare/cut".split(),
     *"decided PSNR FLIP MiB,_all MiB,_cut uploads".split(),
@@ -135,6 +139,7 @@ def measure(device, surfels, view: str, eye, shadow: int, options, passes: list,
         each = ", ".join(f"{name} {ms:.1f}" for name, ms in spent.items())
         passes.append((f"{len(surfels):,}", view, f"{over.mean() if len(over) else 0:.1f}", each))
         times.append({"surfels": len(surfels), "view": view, "all": np.nan, **took, "bare": bare})
+    share = decided(renderers["cut"], lit, camera, settings["cut"], options.turns)
     one, beside = drawn.results["cut"], ("", "", "")
     renderers["cut"].release()
     if other := drawn.results.get("all"):
@@ -146,7 +151,7 @@ def measure(device, surfels, view: str, eye, shadow: int, options, passes: list,
         f"{len(surfels):,}", view, "sun's" if shadow else "none", f"{one.stats['splats_drawn']:,}",
         f"{took['all']:.0f}" if other else "", f"{took['cut']:.0f}",
         f"{took['following']:.0f}" if shadow else "", beside[0],
-        f"{bare / took['cut']:.2f}", f"{1e3 * decided(lit, camera, settings['cut']) / took['cut']:.1%}",
+        f"{bare / took['cut']:.2f}", f"{share:.1%}",
         *beside[1:], memory.get("all", ""), memory["cut"], uploads,
     )  # fmt: skip
 
@@ -178,12 +183,25 @@ def render_with_maps(renderer: Renderer, scene, camera, settings):
     return renderer.render(scene, camera, settings)
 
 
-def decided(scene, camera, settings) -> float:
-    """Seconds to plan a frame and cut all its views."""
-    started = perf_counter()
-    made = plan(scene, camera, settings)
-    for instance in made.facts.get("levels", ()):
-        for seen in (camera, *(m.drawn for m in made.facts["shadow_maps"])):
-            levels = hierarchy_of(instance.surfels)
-            entries_of(levels, cut_blocks(levels.blocks, sight(instance, seen, False, settings.detail_tolerance)))
-    return perf_counter() - started
+def decided(renderer: Renderer, scene, camera, settings, turns: int) -> float:
+    """The share of its own time in which a frame is planned and its surfels are chosen: the median over frames of a
+    camera that moves, so that none has another's choice."""
+    shares = []
+    for turn in range(turns):
+        moved, spent = np.array(camera.matrix_world), []
+        moved[:3, 3] *= 1 + 1e-4 * (turn + 1)
+        with ExitStack() as patches:
+            for module, names in DECIDING.items():
+                for name in names:
+                    timed = partial(_added, spent, getattr(module, name))
+                    patches.enter_context(patch.object(module, name, timed))
+            took, _ = wall(partial(render_with_maps, renderer, scene, replace(camera, matrix_world=moved), settings))
+        shares.append(sum(spent) / took)
+    return float(np.median(shares))
+
+
+def _added(spent: list[float], function, *arguments, **options):
+    """What the function returns; its seconds are added to the list."""
+    seconds, result = wall(partial(function, *arguments, **options))
+    spent.append(seconds)
+    return result
