@@ -16,7 +16,7 @@ from mathutils.bvhtree import BVHTree
 
 from ...sampling import TriangleMesh
 from ...surfels import Surfels
-from ..geometry.node_groups import known_group, new_modifier_group, uses_group
+from ..geometry.node_groups import input_of, known_group, new_modifier_group, uses_group
 from ..geometry.node_maths import Maths, Socket, enabled
 from ..geometry.reading import read_values
 from ..ids import POINT_ATTRIBUTES, REST, SHAPE_GROUP
@@ -102,7 +102,7 @@ def not_bent(made: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> str | No
         return None
     # it may have been converted to a curve, or to an object of another type
     vertices = getattr(source.evaluated_get(depsgraph).data, "vertices", ())
-    count, bound = len(vertices), _given(modifier, "Vertices")
+    count, bound = len(vertices), input_of(modifier, _identifier(modifier, "Vertices"))
     if count == bound:
         return None
     return (
@@ -124,14 +124,6 @@ def _unbind(made: bpy.types.Object) -> None:
 def _pinned(made: bpy.types.Object) -> int:
     """Number of modifiers that stay behind a new one."""
     return sum(modifier.use_pin_to_last for modifier in made.modifiers)
-
-
-def _given(modifier: bpy.types.NodesModifier, name: str):
-    """The value of an input of the modifier's node group."""
-    identifier = _identifier(modifier, name)
-    if hasattr(modifier, "properties"):
-        return getattr(modifier.properties.inputs, identifier).value
-    return modifier[identifier]
 
 
 def _identifier(modifier: bpy.types.NodesModifier, name: str) -> str:

@@ -13,6 +13,7 @@ from .animation import animated_paths
 from .as_rendered import as_rendered, differing_levels
 from .bring_back import hide_source, is_disabled_in_renders
 from .following import follow, follow_visibility
+from .object_info import sentences_about
 from .shape_following import follow_shape, is_bent
 from .source_record import keep_record, record_of
 
@@ -38,6 +39,7 @@ def tie(conversion, made: bpy.types.Object, kind: str, settings, follows: bool, 
         made.hide_render, made.display_type = True, conversion.sources[0].display_type
         notes.append(f"{made.name!r} is disabled in renders, as its source is")
     for source in conversion.sources:
+        notes += sentences_about(source, made, bpy.context.scene)
         # an earlier choice about how to render the source must not show it beside its surfels
         getattr(source, OBJECT_SETTINGS).render_as = "SCENE"
         if hides:

@@ -20,6 +20,13 @@ def uses_group(modifier: bpy.types.Modifier, make: str) -> bool:
     return modifier.type == "NODES" and modifier.node_group is not None and make in modifier.node_group
 
 
+def input_of(modifier: bpy.types.NodesModifier, identifier: str):
+    """The value of an input of the modifier's node group; Blender 5.2 keeps them elsewhere."""
+    if hasattr(modifier, "properties"):
+        return getattr(modifier.properties.inputs, identifier).value
+    return modifier.get(identifier)
+
+
 def new_modifier_group(name: str, make: str, version: int) -> bpy.types.NodeTree:
     """A new group with a geometry input and a geometry output."""
     group = bpy.data.node_groups.new(name, "GeometryNodeTree")
