@@ -55,6 +55,10 @@ MAX_SURFELS = 100_000_000
 _MANY, _MANY_OF_A_TRIANGLE = 500_000, 1000
 
 
+#: The share of the surfels from which a report says how many flat places saved.
+_LEAST_SAVED = 0.01
+
+
 @dataclass(frozen=True)
 class Choices:
     """The user's settings for a conversion.
@@ -141,7 +145,8 @@ class Conversion:
         objects = f"{len(self.sources)} objects, " if len(self.sources) > 1 else ""
         why = f" ({self.reason})" if self.reason else ""
         details = [f"{parts:,} small part{'s' * (parts > 1)} got one surfel each"] if parts else []
-        if self.choices.tolerance is not None and (saved or self.choices.tolerance):
+        is_much = saved >= _LEAST_SAVED * (len(self.surfels) + saved)
+        if self.choices.tolerance or (self.choices.tolerance is not None and is_much):
             off = f" and are off by {self.sampling.error:.2g} at most" if self.choices.tolerance else ""
             details.append(f"flat places saved {saved:,} surfels{off}")
         if self._repeats_an_image:

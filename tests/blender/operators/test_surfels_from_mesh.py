@@ -86,6 +86,19 @@ def test_large_surfels_lie_inside_flat_faces_unless_it_is_turned_off(cube, conve
     assert len(surfels_of(convert(resolution=64, use_adaptive=False)[0])) == 6 * 64 * 64
 
 
+def test_a_report_leaves_out_savings_of_less_than_a_hundredth(convert, surfels_of, capfd):
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=3)
+    ball, counts = bpy.context.object, []
+    for use_adaptive in (True, False):
+        ball.select_set(True)
+        bpy.context.view_layer.objects.active = ball
+        [made] = (each for each in convert(resolution=100, use_adaptive=use_adaptive) if each != ball)
+        counts.append(len(surfels_of(made)))
+    less, every = counts
+    assert 0 < every - less < 0.01 * every
+    assert "flat places saved" not in capfd.readouterr().out
+
+
 def test_adaptive_surfels_are_fewer_and_the_report_says_how_far_off(cube, convert, surfels_of, capfd):
     surfels = surfels_of(convert(resolution=64, use_adaptive=True, tolerance=1e-4)[0])
     assert len(surfels) < 6 * 64 * 64 / 3
