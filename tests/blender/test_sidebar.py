@@ -8,9 +8,10 @@ import bpy
 import pytest
 
 from splat_addon.blender.conversion import prediction
+from splat_addon.blender.conversion.density_reason import Reason, sentences
 from splat_addon.blender.ids import SURFELS_FROM_MESH, SURFELS_FROM_POINTS
 from splat_addon.blender.ui.points_panel import VIEW3D_PT_surfels_from_points
-from splat_addon.blender.ui.sidebar import VIEW3D_PT_surfels_from_mesh, merged_reasons
+from splat_addon.blender.ui.sidebar import VIEW3D_PT_surfels_from_mesh
 
 PANELS = (VIEW3D_PT_surfels_from_mesh, VIEW3D_PT_surfels_from_points)
 
@@ -59,17 +60,15 @@ def test_nothing_selected_is_said(drawn):
 
 
 def test_reasons_that_differ_in_how_many_times_only_are_one_line():
-    seen = "0.75 pixels where {the} camera is nearest"
-    thin = [f"{times} times finer, as it is thin, than {seen}" for times in ("1.4", "2.1", "1.1", "10.0")]
-    many = [
-        f"at most 4 surfels, {a} times coarser than {b} times finer than" for a, b in (("3.0", "2.0"), ("1.5", "2.0"))
-    ]
-    assert merged_reasons([seen, *thin, seen, *many]) == [
+    seen = "0.75 pixels where the camera is nearest"
+    thin = [Reason(seen, finer) for finer in (1.4, 2.1, 1.1, 10.0)]
+    many = [Reason(seen, 2.0, coarser, 1234) for coarser in (3.0, 1.5)]
+    assert sentences([Reason(seen), *thin, Reason(seen), *many]) == [
         seen,
         f"1.1 to 10.0 times finer, as it is thin, than {seen}",
-        "at most 4 surfels, 1.5 to 3.0 times coarser than 2.0 times finer than",
+        f"at most 1,234 surfels, 1.5 to 3.0 times coarser than 2.0 times finer, as it is thin, than {seen}",
     ]
-    assert merged_reasons(thin[:1]) == thin[:1]
+    assert str(thin[0]) == f"1.4 times finer, as it is thin, than {seen}"
 
 
 def test_the_panel_merges_reasons(add_mesh, camera, drawn):

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from functools import cache
 from typing import NamedTuple
 
@@ -18,6 +19,7 @@ from mathutils import Matrix
 from ...sampling import NotSeenError, Outline
 from .animation import is_moving
 from .camera_density import without_camera
+from .density_reason import Reason
 from .placement import is_uneven
 
 #: Cells along the longest edge if no camera sees the object, and the minimum if a camera sees it from afar.
@@ -40,10 +42,10 @@ MOTION_MARGIN = 1.25
 
 
 class Automatic(NamedTuple):
-    """spacing: in the units of the result. reason: an explanation for the user; "" if there is nothing to sample."""
+    """spacing: in the units of the result. reason: for the user; None if there is nothing to sample."""
 
     spacing: float
-    reason: str
+    reason: Reason | None
 
 
 def automatic_spacing(
@@ -66,34 +68,32 @@ def automatic_spacing(
     saved: how many surfels large ones spare at a spacing.
     """
     if not (area > 0 and longest_edge > 0 and pixels > 0):
-        return Automatic(0.0, "")
+        return Automatic(0.0, None)
     surface = cache(surface)
     moves = any(map(is_moving, (*sources, depsgraph.scene.camera)))
     margin = MOTION_MARGIN if moves else 1.0
     try:
         asked = {"pixels": pixels / margin / detail}
         spacing = without_camera(asked, surface, matrix_world, depsgraph)["spacing"]
-        reason = f"{asked['pixels']:.3g} pixels where the camera is nearest"
-        reason += f", {margin:g} times finer as something moves" if moves else ""
+        basis = f"{asked['pixels']:.3g} pixels where the camera is nearest"
+        basis += f", {margin:g} times finer as something moves" if moves else ""
         if is_uneven(matrix_world, MOST_UNEVEN):
-            reason += "; its scale is uneven, which multiplies surfels: apply it, or choose Space > World"
+            basis += "; its scale is uneven, which multiplies surfels: apply it, or choose Space > World"
     except NotSeenError:
-        spacing, reason = _by_resolution(longest_edge, detail, "the camera does not see it")
+        spacing, basis = _by_resolution(longest_edge, detail, "the camera does not see it")
     except ValueError as error:
         is_there = depsgraph.scene.camera is not None
         why = str(error).rstrip(".") if is_there else "the scene has no camera"
-        spacing, reason = _by_resolution(longest_edge, detail, why)
+        spacing, basis = _by_resolution(longest_edge, detail, why)
     coarsest = longest_edge / LEAST_RESOLUTION
     if spacing > coarsest:
-        spacing, reason = coarsest, f"resolution {LEAST_RESOLUTION}, the least, as the camera is far away"
-    of_wire = _of_wire(spacing, surface().width, area)
+        spacing, basis = coarsest, f"resolution {LEAST_RESOLUTION}, the least, as the camera is far away"
+    reason, of_wire = Reason(basis), _of_wire(spacing, surface().width, area)
     if of_wire < spacing:
-        reason = f"{spacing / of_wire:.1f} times finer, as it is thin, than {reason}"
-        spacing = of_wire
+        spacing, reason = of_wire, replace(reason, finer=spacing / of_wire)
     finest = _finest(spacing, area, saved)
     if spacing < finest:
-        reason = f"at most {MOST_SURFELS:,} surfels, {finest / spacing:.1f} times coarser than {reason}"
-        spacing = finest
+        spacing, reason = finest, replace(reason, coarser=finest / spacing, most=MOST_SURFELS)
     return Automatic(spacing, reason)
 
 

@@ -184,7 +184,8 @@ def prepare(
         area, longest_edge = projected_area(mesh, **how), grid_spacing(mesh, resolution=1)
         what = choices.density["automatic"], lambda: outline(mesh), area, longest_edge
         about = matrix_world, depsgraph, sources, detail, lambda spacing: flat().saved(spacing)
-        spacing, reason = automatic_spacing(*what, *about)
+        spacing, why = automatic_spacing(*what, *about)
+        reason = str(why) if why else ""
     else:
         density = without_camera(finer(choices.density, detail), lambda: outline(mesh), matrix_world, depsgraph)
         spacing = grid_spacing(mesh, **density, **how)

@@ -3,15 +3,12 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterable
-from itertools import chain, zip_longest
-
 import bpy
 
 from ...sampling import UNKNOWN_FLAT_EXTENTS
 from ..conversion.automatic_density import automatic_spacing
 from ..conversion.camera_density import without_camera
+from ..conversion.density_reason import Reason, sentences
 from ..conversion.gathering import frame_of, groups
 from ..conversion.mesh_conversion import Choices
 from ..conversion.mesh_settings import PROPERTY_NAMES, choices, draw_properties
@@ -112,33 +109,14 @@ def prediction(context: bpy.types.Context, sources: list[bpy.types.Object], aske
     text = prediction_text([extent.predict(f) for extent, (f, _) in zip(extents, found, strict=True)])
     if asked.tolerance or any(extent.flat is UNKNOWN_FLAT_EXTENTS for extent in extents):
         text = said("{count}, fewer where flat", count=text)
-    return "\n".join([text, *merged_reasons(reason for _, reason in found if reason)])
+    return "\n".join([text, *sentences(reason for _, reason in found if reason)])
 
 
-#: How many times finer or coarser, in a reason for an automatic density.
-_TIMES = re.compile(r"\d+\.\d(?= times )")
-
-
-def merged_reasons(reasons: Iterable[str]) -> list[str]:
-    """The different reasons, those that differ only in how many times finer or coarser as one with the range. Many
-    thin objects would otherwise push the button out of the panel."""
-    alike = {}
-    for reason in reasons:
-        alike.setdefault(tuple(_TIMES.split(reason)), []).append([float(times) for times in _TIMES.findall(reason)])
-    merged = ((texts, map(_range, zip(*numbers, strict=True))) for texts, numbers in alike.items())
-    return ["".join(chain(*zip_longest(texts, ranges, fillvalue=""))) for texts, ranges in merged]
-
-
-def _range(numbers: tuple[float, ...]) -> str:
-    low, high = (f"{bound(numbers):.1f}" for bound in (min, max))
-    return low if low == high else f"{low} to {high}"
-
-
-def _density_of(sources, extent: Extent, asked: Choices, depsgraph) -> tuple[dict[str, float], str]:
+def _density_of(sources, extent: Extent, asked: Choices, depsgraph) -> tuple[dict[str, float], Reason | None]:
     """The density in the form that `Extent.predict` takes, and the reason if it is automatic. Raises ValueError."""
     detail, frame = detail_of(sources[0]), frame_of(sources[0], asked.in_world_units)
     if "automatic" not in asked.density:
-        return without_camera(finer(asked.density, detail), lambda: extent.surface, frame, depsgraph), ""
+        return without_camera(finer(asked.density, detail), lambda: extent.surface, frame, depsgraph), None
     what = asked.density["automatic"], lambda: extent.surface, extent.area, extent.longest_edge
     spacing, reason = automatic_spacing(*what, frame, depsgraph, sources, detail, extent.flat.saved)
     return {"spacing": spacing}, reason
