@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import bpy
 
+from ..geometry.node_groups import nodes_in, taken_by
 from ..geometry.sources import has_surfaces, instanced_collections
 from .animation import animated_paths, is_animated, is_moving, moves_against
 
@@ -27,6 +28,13 @@ _REBUILDING_IF_CHANGED = frozenset(
 #: Modifiers that move vertices as time passes.
 _PASSING = frozenset("CLOTH MESH_CACHE MESH_SEQUENCE_CACHE SOFT_BODY WAVE".split())
 
+#: Nodes whose result depends on the time.
+_TIMED_NODES = frozenset(
+    "GeometryNodeBake GeometryNodeDeformCurvesOnSurface GeometryNodeImageInfo GeometryNodeImageTexture "
+    "GeometryNodeInputActiveCamera GeometryNodeInputSceneTime GeometryNodeSelfObject GeometryNodeSimulationInput "
+    "GeometryNodeSimulationOutput".split()
+)
+
 #: Modifiers that make other vertices as time passes.
 _REBUILDING = frozenset({"BUILD", "EXPLODE", "PARTICLE_INSTANCE"})
 
@@ -35,6 +43,13 @@ def is_deformed(source: bpy.types.Object) -> bool:
     """Whether an object's vertices may move from frame to frame."""
     has_keys = getattr(source.data, "shape_keys", None) is not None
     return has_keys or source.parent_type == "ARMATURE" or any(_deforms(m, source) for m in source.modifiers)
+
+
+def changes_in_time(source: bpy.types.Object) -> bool:
+    """As `is_deformed`, but Geometry Nodes count only if they, or what they take, may change from frame to frame."""
+    has_keys = getattr(source.data, "shape_keys", None) is not None
+    moving = (_deforms(m, source) and (m.type != "NODES" or _nodes_change(m, source)) for m in source.modifiers)
+    return has_keys or source.parent_type == "ARMATURE" or any(moving)
 
 
 def rebuilt_by(source: bpy.types.Object) -> str | None:
@@ -60,6 +75,22 @@ def _may_change(owner: bpy.types.Object) -> bool:
 
 def _deforms(modifier: bpy.types.Modifier, source: bpy.types.Object) -> bool:
     return modifier.type in _DEFORMING or (modifier.type in _DEFORMING_IF_CHANGED and _changes(modifier, source))
+
+
+def _nodes_change(modifier: bpy.types.NodesModifier, source: bpy.types.Object) -> bool:
+    """Whether Geometry Nodes may make something else as time passes."""
+    if modifier.node_group is None:
+        return False
+    if _changes(modifier, source) or is_animated(modifier.node_group):
+        return True
+    nodes = list(nodes_in(modifier.node_group))
+    groups = (node.node_tree for node in nodes if node.type == "GROUP" and node.node_tree is not None)
+    taken = (taken.all_objects if isinstance(taken, bpy.types.Collection) else [taken] for taken in taken_by(modifier))
+    return (
+        any(node.bl_idname in _TIMED_NODES for node in nodes)
+        or any(map(is_animated, groups))
+        or any(_changes_for(each, source) or is_deformed(each) for some in taken for each in some if each != source)
+    )
 
 
 def _rebuilds(modifier: bpy.types.Modifier, source: bpy.types.Object) -> bool:

@@ -20,7 +20,7 @@ from ..geometry.node_groups import input_of, known_group, new_modifier_group, us
 from ..geometry.node_maths import Maths, Socket, enabled
 from ..geometry.reading import read_values
 from ..ids import POINT_ATTRIBUTES, REST, SHAPE_GROUP
-from .changing_shape import changes_inside, is_deformed, rebuilt_by
+from .changing_shape import changes_in_time, changes_inside, is_deformed, rebuilt_by
 from .following import follows
 from .source_record import record_of, sources_of
 
@@ -64,7 +64,7 @@ def follow_shape(made: bpy.types.Object, conversion, depsgraph: bpy.types.Depsgr
         return None
     surfels, mesh = conversion.surfels, conversion.mesh
     if source.type != "MESH" or not _is_own_mesh(source, mesh, depsgraph):
-        return "it shows instances, or no mesh of its own"
+        return "it shows instances, or no mesh of its own" if changes_in_time(source) else None
     frame, own = (np.array(m, np.float64) for m in (conversion.matrix_world, source.matrix_world))
     if surfels.origin.any() or np.abs(frame - own).max() > _ROUNDING * np.abs(own).max():
         return "its surfels are even in the world, or it is sheared or far from its origin"

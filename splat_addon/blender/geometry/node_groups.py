@@ -6,6 +6,8 @@ A file has at most one of each kind, marked by a custom property.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import bpy
 
 
@@ -25,6 +27,29 @@ def input_of(modifier: bpy.types.NodesModifier, identifier: str):
     if hasattr(modifier, "properties"):
         return getattr(modifier.properties.inputs, identifier).value
     return modifier.get(identifier)
+
+
+def nodes_in(tree: bpy.types.NodeTree, seen: set | None = None) -> Iterator[bpy.types.Node]:
+    """The nodes of a tree and of the groups in it, each group once. seen: trees that are left out."""
+    seen = set() if seen is None else seen
+    seen.add(tree)
+    for node in tree.nodes:
+        yield node
+        inner = node.node_tree if node.type == "GROUP" else None
+        if inner is not None and inner not in seen:
+            yield from nodes_in(inner, seen)
+
+
+def taken_by(modifier: bpy.types.NodesModifier) -> Iterator[bpy.types.Object | bpy.types.Collection]:
+    """The objects and collections that Geometry Nodes take, from inputs of their nodes or of the modifier."""
+    tree = modifier.node_group
+    if tree is None:
+        return
+    sockets = (socket for node in nodes_in(tree) for socket in node.inputs if socket.type in ("OBJECT", "COLLECTION"))
+    taken = [socket.default_value for socket in sockets if not socket.is_linked]
+    inputs = (item for item in tree.interface.items_tree if item.item_type == "SOCKET" and item.in_out == "INPUT")
+    named = [item.identifier for item in inputs if item.socket_type in ("NodeSocketObject", "NodeSocketCollection")]
+    yield from (each for each in (*taken, *(input_of(modifier, name) for name in named)) if each is not None)
 
 
 def new_modifier_group(name: str, make: str, version: int) -> bpy.types.NodeTree:

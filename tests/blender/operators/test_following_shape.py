@@ -220,6 +220,57 @@ def test_what_is_not_followed_is_named(sheet, convert, capfd):
     assert "Warning: What bends 'Sheet' does not bend its surfels" in capfd.readouterr().out
 
 
+def put_cubes_on(sheet):
+    """Let nodes put cubes on the sheet. Returns the modifier and a cube."""
+    bpy.ops.mesh.primitive_cube_add(size=0.02)
+    cube = bpy.context.object
+    cube.select_set(False)
+    tree = bpy.data.node_groups.new("Scatter", "GeometryNodeTree")
+    tree.interface.new_socket("Geometry", in_out="INPUT", socket_type="NodeSocketGeometry")
+    tree.interface.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
+    before, after, info, put, join = (
+        tree.nodes.new(kind)
+        for kind in "NodeGroupInput NodeGroupOutput GeometryNodeObjectInfo GeometryNodeInstanceOnPoints "
+        "GeometryNodeJoinGeometry".split()
+    )
+    info.inputs["Object"].default_value = cube
+    for start, end in (
+        (before.outputs[0], put.inputs["Points"]),
+        (info.outputs["Geometry"], put.inputs["Instance"]),
+        (before.outputs[0], join.inputs[0]),
+        (put.outputs[0], join.inputs[0]),
+        (join.outputs[0], after.inputs[0]),
+    ):
+        tree.links.new(start, end)
+    modifier = sheet.modifiers.new("Scatter", "NODES")
+    modifier.node_group = tree
+    sheet.select_set(True)
+    bpy.context.view_layer.objects.active = sheet
+    return modifier, cube
+
+
+def grow(modifier, cube):
+    modifier.node_group.nodes["Instance on Points"].inputs["Scale"].keyframe_insert("default_value", frame=1)
+
+
+NODES_CHANGE = {
+    "nothing": (lambda modifier, cube: None, False),
+    "the time": (lambda modifier, cube: modifier.node_group.nodes.new("GeometryNodeInputSceneTime"), True),
+    "an animated input": (grow, True),
+    "a cube that is bent": (lambda modifier, cube: add_keys(cube), True),
+    "a cube that is animated": (lambda modifier, cube: move(cube), True),
+}
+
+
+@pytest.mark.parametrize("change", NODES_CHANGE)
+def test_instances_of_nodes_that_never_change_are_no_reason_for_a_warning(change, sheet, convert, capfd):
+    apply, is_told = NODES_CHANGE[change]
+    apply(*put_cubes_on(sheet))
+    convert(density="RESOLUTION", resolution=8)
+    told = "What bends 'Sheet' does not bend its surfels: it shows instances, or no mesh of its own"
+    assert (told in capfd.readouterr().out) == is_told
+
+
 def test_other_levels_in_the_viewport_are_named(sheet, convert, capfd, bent_surfels):
     add_keys(sheet).value = 0.0
     modifier = sheet.modifiers.new("Fine", "SUBSURF")
