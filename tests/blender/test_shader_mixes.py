@@ -101,6 +101,15 @@ def test_a_lamp_mixed_with_transparent_keeps_its_brightness(tree, baked):
     assert np.abs(surfels.emission - 3 * np.array(BLUE[:3])).max() < 2e-2
 
 
+def test_alpha_fades_emission_in_a_mix(tree, baked):
+    glow = add(tree, "ShaderNodeBsdfPrincipled", Alpha=0.5)
+    glow.inputs["Emission Strength"].default_value = 2.0
+    tree.links.new(not_read(tree, BLUE), glow.inputs["Emission Color"])
+    surfels = baked(joined(tree, "ShaderNodeMixShader", glow, add(tree, "ShaderNodeBsdfDiffuse", RED), 0.5))
+    assert np.abs(surfels.colors[:, 3] - 0.75).max() < 2e-3
+    assert np.abs(0.75 * surfels.emission - 0.5 * 0.5 * 2 * np.array(BLUE[:3])).max() < 1e-2
+
+
 def test_shaders_that_are_mixed_in_many_ways_are_each_baked_once(tree, baked):
     first, second = (add(tree, "ShaderNodeBsdfDiffuse", color) for color in (RED, BLUE))
     for _ in range(5):

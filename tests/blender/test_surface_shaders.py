@@ -163,6 +163,14 @@ def test_a_mix_of_plain_shaders_is_their_mean(made):
     assert made.said == ["The material 'made' mixes shaders, which this engine draws as one with their mean settings"]
 
 
+def test_alpha_fades_emission_in_a_mix(made):
+    """As in Cycles: of a mix's half, half lets light through, so that a quarter of the radiance is left."""
+    glow = made.add("ShaderNodeBsdfPrincipled", Alpha=0.5, Emission_Color=BLUE, Emission_Strength=2.0)
+    made.show(made.mix("ShaderNodeMixShader", glow, made.add("ShaderNodeBsdfDiffuse"), 0.5))
+    assert np.isclose(made.color[3], 0.75)
+    assert np.allclose(0.75 * np.array(made.shaded.emission), 0.5 * 0.5 * 2 * np.array(BLUE[:3]))
+
+
 def test_an_added_lamp_only_adds_its_light(made):
     paint = made.add("ShaderNodeBsdfPrincipled", Base_Color=RED, Roughness=0.2)
     lamp = made.add("ShaderNodeEmission", Color=BLUE, Strength=3.0)

@@ -42,7 +42,8 @@ def mean_of(shader: Shader) -> Mean:
         opacity = _value(part, "opacity", 1.0, unsure)[0]
         through += part.share * (1 - opacity)
         color += part.share * opacity * _value(part, "color", 0.8, unsure)
-        emission += part.share * _value(part, "emission", 0.0, unsure)
+        # a Principled shader's alpha fades its emission, too
+        emission += part.share * opacity * _value(part, "emission", 0.0, unsure)
     opacity = float(np.clip(1 - through, 0, 1))
     color, emission = (part / opacity if opacity > LEAST_OPACITY else np.zeros(3) for part in (color, emission))
     sent = Channel(tuple(emission.tolist())) if emission.any() else None

@@ -108,7 +108,8 @@ def _emission(tree: Tree, end: Node) -> Given:
     names = SHADERS.get(end.bl_idname, {}).get("emission")
     if names is None:
         return _BLACK
-    return _mixed(tree, "MULTIPLY", *(_given(end.inputs[name]) for name in names))
+    sent = _mixed(tree, "MULTIPLY", *(_given(end.inputs[name]) for name in names))
+    return _mixed(tree, "MULTIPLY", sent, _given(end.inputs["Alpha"])) if end.type == "BSDF_PRINCIPLED" else sent
 
 
 #: channel -> what a leaf shader supplies; for the opacity, what it transmits
