@@ -41,15 +41,18 @@ _REBUILDING = frozenset({"BUILD", "EXPLODE", "PARTICLE_INSTANCE"})
 
 def is_deformed(source: bpy.types.Object) -> bool:
     """Whether an object's vertices may move from frame to frame."""
-    has_keys = getattr(source.data, "shape_keys", None) is not None
-    return has_keys or source.parent_type == "ARMATURE" or any(_deforms(m, source) for m in source.modifiers)
+    return _is_bent(source, any(_deforms(m, source) for m in source.modifiers))
 
 
 def changes_in_time(source: bpy.types.Object) -> bool:
     """As `is_deformed`, but Geometry Nodes count only if they, or what they take, may change from frame to frame."""
+    changing = (m for m in source.modifiers if m.type != "NODES" or _nodes_change(m, source))
+    return _is_bent(source, any(_deforms(m, source) for m in changing))
+
+
+def _is_bent(source: bpy.types.Object, by_modifiers: bool) -> bool:
     has_keys = getattr(source.data, "shape_keys", None) is not None
-    moving = (_deforms(m, source) and (m.type != "NODES" or _nodes_change(m, source)) for m in source.modifiers)
-    return has_keys or source.parent_type == "ARMATURE" or any(moving)
+    return has_keys or source.parent_type == "ARMATURE" or by_modifiers
 
 
 def rebuilt_by(source: bpy.types.Object) -> str | None:
@@ -81,16 +84,13 @@ def _nodes_change(modifier: bpy.types.NodesModifier, source: bpy.types.Object) -
     """Whether Geometry Nodes may make something else as time passes."""
     if modifier.node_group is None:
         return False
-    if _changes(modifier, source) or is_animated(modifier.node_group):
-        return True
     nodes = list(nodes_in(modifier.node_group))
-    groups = (node.node_tree for node in nodes if node.type == "GROUP" and node.node_tree is not None)
+    if _changes(modifier, source) or any(map(is_animated, {node.id_data for node in nodes})):
+        return True
     taken = (taken.all_objects if isinstance(taken, bpy.types.Collection) else [taken] for taken in taken_by(modifier))
-    return (
-        any(node.bl_idname in _TIMED_NODES for node in nodes)
-        or any(map(is_animated, groups))
-        or any(_changes_for(each, source) or is_deformed(each) for some in taken for each in some if each != source)
-    )
+    used = {each for some in taken for each in some} - {source}
+    is_timed = any(node.bl_idname in _TIMED_NODES for node in nodes)
+    return is_timed or any(_changes_for(each, source) or is_deformed(each) for each in used)
 
 
 def _rebuilds(modifier: bpy.types.Modifier, source: bpy.types.Object) -> bool:

@@ -6,9 +6,11 @@ A file has at most one of each kind, marked by a custom property.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import bpy
+
+Taken = bpy.types.Object | bpy.types.Collection
 
 
 def known_group(make: str, version: int) -> bpy.types.NodeTree | None:
@@ -40,16 +42,22 @@ def nodes_in(tree: bpy.types.NodeTree, seen: set | None = None) -> Iterator[bpy.
             yield from nodes_in(inner, seen)
 
 
-def taken_by(modifier: bpy.types.NodesModifier) -> Iterator[bpy.types.Object | bpy.types.Collection]:
-    """The objects and collections that Geometry Nodes take, from inputs of their nodes or of the modifier."""
+def taken_inside(tree: bpy.types.NodeTree) -> list[Taken]:
+    """The objects and collections that inputs of a tree's nodes have, groups included."""
+    sockets = (socket for node in nodes_in(tree) for socket in node.inputs if socket.type in ("OBJECT", "COLLECTION"))
+    return [socket.default_value for socket in sockets if not socket.is_linked and socket.default_value is not None]
+
+
+def taken_by(modifier: bpy.types.NodesModifier, inside: Callable[..., list[Taken]] = taken_inside) -> list[Taken]:
+    """The objects and collections that Geometry Nodes take, from inputs of their nodes or of the modifier. inside:
+    `taken_inside`, which may remember trees."""
     tree = modifier.node_group
     if tree is None:
-        return
-    sockets = (socket for node in nodes_in(tree) for socket in node.inputs if socket.type in ("OBJECT", "COLLECTION"))
-    taken = [socket.default_value for socket in sockets if not socket.is_linked]
+        return []
     inputs = (item for item in tree.interface.items_tree if item.item_type == "SOCKET" and item.in_out == "INPUT")
-    named = [item.identifier for item in inputs if item.socket_type in ("NodeSocketObject", "NodeSocketCollection")]
-    yield from (each for each in (*taken, *(input_of(modifier, name) for name in named)) if each is not None)
+    named = (item.identifier for item in inputs if item.socket_type in ("NodeSocketObject", "NodeSocketCollection"))
+    given = (input_of(modifier, name) for name in named)
+    return [*inside(tree), *(taken for taken in given if taken is not None)]
 
 
 def new_modifier_group(name: str, make: str, version: int) -> bpy.types.NodeTree:

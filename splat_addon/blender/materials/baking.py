@@ -13,6 +13,7 @@ from mathutils import Matrix
 
 from ...sampling import Surface
 from ...surfels import OPTIONAL_LAYOUT, Surfels
+from ..geometry.node_groups import nodes_in
 from .bake_scene import BakeScene
 from .material_surfaces import Unread
 from .mean_surfaces import LEAST_OPACITY
@@ -81,10 +82,8 @@ def baked_otherwise(unread: Iterable[tuple[bpy.types.Material, Unread]]) -> list
 
 
 def _not_reproduced(tree: bpy.types.NodeTree) -> Iterator[str]:
-    for node in tree.nodes:
-        if node.type == "GROUP" and node.node_tree is not None:
-            yield from _not_reproduced(node.node_tree)
-        elif node.type == "OBJECT_INFO" and node.outputs["Random"].is_linked:
+    for node in nodes_in(tree):
+        if node.type == "OBJECT_INFO" and node.outputs["Random"].is_linked:
             yield "Object Info's Random"  # it comes from the object's name
         elif node.type == "ATTRIBUTE" and node.attribute_type in ("INSTANCER", "VIEW_LAYER"):
             yield f"an attribute of the {node.attribute_type.replace('_', ' ').lower()}"

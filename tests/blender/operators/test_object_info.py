@@ -41,3 +41,14 @@ def test_a_conversion_names_objects_whose_nodes_take_the_source(place, source, c
     convert(resolution=8)
     told = "The Geometry Nodes of 'Ground' still take the mesh of 'Tuft'; choose 'Tuft surfels' there"
     assert (told in capfd.readouterr().out) == bool(place)
+
+
+def test_surfels_that_bend_with_the_source_are_none_of_them(source, convert, capfd):
+    """Their own nodes take the source, too."""
+    source.shape_key_add(name="Basis")
+    convert(resolution=8)
+    source.select_set(True)
+    bpy.context.view_layer.objects.active = source
+    convert(resolution=8)
+    assert sum(any(m.type == "NODES" for m in each.modifiers) for each in bpy.data.objects) >= 1
+    assert "still take the mesh" not in capfd.readouterr().out
