@@ -12,11 +12,12 @@ import argparse
 import os
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import environment
 from environment import ROOT, Problem
-from testing import program
+from testing import costs, program
 from testing.groups import BLENDER, PLAIN, QUICK, by_process, paths_by_group, split_arguments
 
 #: pytest's exit codes.
@@ -82,16 +83,25 @@ def main(arguments: list) -> int:
     groups = paths_by_group(paths, only_pictures=bool(options.blender))
     python = environment.make("test", options.bpy).python
     variables = program.prepare(options.blender, python) if options.blender else {}
+    with tempfile.TemporaryDirectory() as folder:
+        os.environ[costs.FOLDER_VARIABLE] = folder
+        codes = run_groups(options, python, groups, pytest_arguments, variables or ONE_THREAD)
+        print(costs.report(Path(folder)), flush=True)
+    return verdict(codes)
+
+
+def run_groups(options: argparse.Namespace, python: Path, groups: dict, arguments: list, variables: dict) -> dict:
+    """Run both groups' processes, one after the other; returns the exit code of each."""
     codes = {}
     if groups.get(PLAIN):
-        command = wheel_command(python, "standalone", [*groups[PLAIN], *pytest_arguments])
+        command = wheel_command(python, "standalone", [*groups[PLAIN], *arguments])
         codes[PLAIN] = run(PLAIN, command, **ONE_THREAD)
         print(f"== group {PLAIN}: pytest ended with exit code {codes[PLAIN]}", flush=True)
     if groups.get(BLENDER):
         for part in by_process(groups[BLENDER]) if options.blender else [groups[BLENDER]]:
-            command = blender_command(options, python, [*part, *pytest_arguments])
-            codes[(BLENDER, *part)] = run(BLENDER, command, **(variables or ONE_THREAD))
-    return verdict(codes)
+            command = blender_command(options, python, [*part, *arguments])
+            codes[(BLENDER, *part)] = run(BLENDER, command, **variables)
+    return codes
 
 
 if __name__ == "__main__":

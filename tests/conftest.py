@@ -20,6 +20,8 @@ if str(ROOT) not in sys.path:
 from splat_addon import reference  # noqa: E402
 from splat_addon.reference.kept import folder, remembered, write  # noqa: E402
 
+pytest_plugins = ("tests.costs",)
+
 # The truth does not depend on the device, so the group of tests that comes first finds it for both. Tests import these
 # two by name, and all of them after this file.
 reference.render_exact, reference.render_ewa = map(remembered, (reference.render_exact, reference.render_ewa))
