@@ -84,8 +84,8 @@ def main(arguments: list) -> int:
     python = environment.make("test", options.bpy).python
     variables = program.prepare(options.blender, python) if options.blender else {}
     with tempfile.TemporaryDirectory() as folder:
-        os.environ[costs.FOLDER_VARIABLE] = folder
-        codes = run_groups(options, python, groups, pytest_arguments, variables or ONE_THREAD)
+        measured = {costs.FOLDER_VARIABLE: folder}
+        codes = run_groups(options, python, groups, pytest_arguments, {**(variables or ONE_THREAD), **measured})
         print(costs.report(Path(folder)), flush=True)
     return verdict(codes)
 
@@ -95,7 +95,7 @@ def run_groups(options: argparse.Namespace, python: Path, groups: dict, argument
     codes = {}
     if groups.get(PLAIN):
         command = wheel_command(python, "standalone", [*groups[PLAIN], *arguments])
-        codes[PLAIN] = run(PLAIN, command, **ONE_THREAD)
+        codes[PLAIN] = run(PLAIN, command, **{**variables, **ONE_THREAD})
         print(f"== group {PLAIN}: pytest ended with exit code {codes[PLAIN]}", flush=True)
     if groups.get(BLENDER):
         for part in by_process(groups[BLENDER]) if options.blender else [groups[BLENDER]]:

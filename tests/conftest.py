@@ -20,7 +20,7 @@ if str(ROOT) not in sys.path:
 from splat_addon import reference  # noqa: E402
 from splat_addon.reference.kept import folder, remembered, write  # noqa: E402
 
-pytest_plugins = ("tests.costs",)
+pytest_plugins = ("tests.collecting", "tests.costs")
 
 # The truth does not depend on the device, so the group of tests that comes first finds it for both. Tests import these
 # two by name, and all of them after this file.

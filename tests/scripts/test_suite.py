@@ -132,3 +132,7 @@ def test_the_second_group_runs_after_a_failure_of_the_first(test_script, monkeyp
 
 def test_a_backend_without_a_program_is_refused(test_script, capsys):
     assert test_script.main(["--gpu-backend", "vulkan"]) == 2 and "--blender" in capsys.readouterr().err
+
+
+def test_the_checkout_is_a_folder_of_tests_and_may_have_any_name(request):
+    assert not any(isinstance(node, pytest.Package) and node.path == ROOT for node in request.node.listchain())
