@@ -5,17 +5,19 @@ allocated, so a small file cannot ask for a huge allocation."""
 from __future__ import annotations
 
 import os
-import warnings
 from collections.abc import Iterator
-from itertools import islice
 from typing import BinaryIO
 
 import numpy as np
 
 from .ply_header import TYPES, Element, Header, read_header
+from .ply_text import read_text
 from .whole_file import whole_file
 
 _VERTEX = "vertex"
+
+#: Names of the element that holds the points, in small letters, the usual one first.
+_POINTS = (_VERTEX, "vertices", "point", "points", "splat", "splats")
 
 #: numpy's type code -> the type name that every reader knows
 _TYPE_NAMES = {code: name for name, code in reversed(TYPES.items())}
@@ -53,19 +55,20 @@ def vertex_portions(
             raise ValueError(f"The property {name[:40]!r} of the PLY file's points is a list; only numbers can be.")
         if not vertex.types:
             raise ValueError("The points in the PLY file have no properties, not even a position.")
-        before = header.elements[: header.elements.index(vertex)]
         if header.byte_order is None:
-            yield _read_text(stream, size, header, before, vertex), header.comments
+            yield read_text(stream, size, header, vertex), header.comments
         else:
-            for columns in _read_binary(stream, size, header, before, vertex, most):
+            for columns in _read_binary(stream, size, header, vertex, most):
                 yield columns, header.comments
 
 
 def _vertices(header: Header) -> Element:
-    vertex = next((element for element in header.elements if element.name == _VERTEX), None)
-    if vertex is None:
-        raise ValueError(f"The PLY file has no element '{_VERTEX}', so there are no points in it.")
-    return vertex
+    by_name = {element.name.lower(): element for element in header.elements}
+    for name in _POINTS:
+        if name in by_name:
+            return by_name[name]
+    others = ", ".join(repr(element.name[:40]) for element in header.elements[:8]) or "none"
+    raise ValueError(f"The PLY file has no element '{_VERTEX}', so there are no points in it; its elements: {others}.")
 
 
 def write_vertices(
@@ -94,10 +97,10 @@ def write_vertices(
 
 
 def _read_binary(
-    stream: BinaryIO, size: int, header: Header, before, vertex: Element, most: int | None
+    stream: BinaryIO, size: int, header: Header, vertex: Element, most: int | None
 ) -> Iterator[dict[str, np.ndarray]]:
     skipped = 0
-    for element in before:
+    for element in header.elements[: header.elements.index(vertex)]:
         if None in element.types.values():
             raise ValueError(
                 f"The PLY element {element.name[:40]!r} has lists and stands before the points, which cannot be "
@@ -120,38 +123,3 @@ def _read_binary(
 
 def _row_type(element: Element, header: Header) -> np.dtype:
     return np.dtype([(name, header.byte_order + code) for name, code in element.types.items()])
-
-
-def _read_text(stream: BinaryIO, size: int, header: Header, before, vertex: Element) -> dict[str, np.ndarray]:
-    lines = sum(element.count for element in before)
-    # Each value takes a digit and a separator, except for the last value in the file.
-    least = 2 * vertex.count * len(vertex.types) + lines - 1
-    if least > size - header.size:
-        raise ValueError(
-            f"The PLY file says that it has {vertex.count:,} points of {len(vertex.types)} numbers, "
-            f"but only {size - header.size:,} letters follow; it is cut off or damaged."
-        )
-    text = (line.decode("latin-1") for line in islice(stream, lines, lines + vertex.count))
-    try:
-        with warnings.catch_warnings():
-            # Files without data get their own error message below.
-            warnings.simplefilter("ignore", UserWarning)
-            table = np.loadtxt(text, np.float64, comments=None, ndmin=2) if vertex.count else np.empty((0, 0))
-    except ValueError as error:
-        raise ValueError(f"The PLY file's points cannot be read: {error!s:.120}.".replace("\n", " ")) from None
-    if vertex.count and table.shape != (vertex.count, len(vertex.types)):
-        raise ValueError(
-            f"The PLY file says that it has {vertex.count:,} points of {len(vertex.types)} numbers, but "
-            f"{table.shape[0]:,} of {table.shape[1]} were found; it is cut off or damaged."
-        )
-    columns = table.T if vertex.count else np.empty((len(vertex.types), 0))
-    return {name: _as_type(column, code) for (name, code), column in zip(vertex.types.items(), columns, strict=True)}
-
-
-def _as_type(column: np.ndarray, code: str) -> np.ndarray:
-    """Text converted to the declared type; numbers out of range are clamped to the type's range."""
-    if code[0] != "f":
-        limits = np.iinfo(code)
-        column = np.clip(np.nan_to_num(column), limits.min, limits.max)
-    with np.errstate(over="ignore"):
-        return column.astype(code)

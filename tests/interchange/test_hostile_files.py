@@ -24,14 +24,18 @@ BINARY, TEXT = "format binary_little_endian 1.0", "format ascii 1.0"
         ([TEXT, *(f"element e{k} {10**18 - 1}" for k in range(12)), "element vertex 1", *XYZ], b"1 2 3\n", "cut off"),
         ([BINARY, "element vertex 2", *XYZ], b"\0" * 23, "cut off or damaged"),
         ([TEXT, "element vertex 2", *XYZ], b"1 2 3\n1 2        \n", "cut off or damaged|cannot be read"),
-        ([TEXT, "element vertex 2", *XYZ], b"1 2 3 4 5 6\n       ", "1 of 6 were found"),
-        ([TEXT, "element vertex 2", *XYZ], b"              \n\n", "0 of"),
-        ([TEXT, "element vertex 1", *XYZ], b"1 two 3\n", "cannot be read"),
+        ([TEXT, "element vertex 2", *XYZ], b"1 2 3 4 5 6 7\n     ", "Line 8 .* has 7 numbers"),
+        ([TEXT, "element vertex 2", *XYZ], b"              \n\n", "but only 0 whole ones follow"),
+        ([TEXT, "element vertex 1", *XYZ], b"1 two 3\n", "Line 8 .* has 'two' where a number must be"),
         ([BINARY, "element vertex -1", *XYZ], b"", "a count of 0 or more, not 'element vertex -1'"),
         ([BINARY, "element vertex 1e9", *XYZ], b"", "a count of 0 or more"),
         ([BINARY, "element vertex " + "9" * 5000, *XYZ], b"", "a count of 0 or more"),
         ([BINARY, "element vertex"], b"", "a count of 0 or more"),
-        ([BINARY, "element face 0"], b"", "no element 'vertex'"),
+        ([TEXT, "element vertex 2", *XYZ], b"1 2 3 0\n4 5 6 0\n", "Line 8 .* has 4 numbers, .* 'x y z'"),
+        ([TEXT, "element vertex 2", *XYZ], b"1 2 3 4 5 6\n1 2 3 4 5 6\n", "Line 8 .* has 6 numbers"),
+        ([TEXT, "element vertex 1", *XYZ], b"1,5 2 3\n", "'1,5' where .* with a point and blanks between"),
+        ([BINARY, "element vertex 1", "property long x"], b"\0" * 99, "'long', which has 4 bytes on some machines"),
+        ([BINARY, "element face 0"], b"", "no element 'vertex', .* its elements: 'face'"),
         ([BINARY, "element vertex 0"], b"", "have no properties"),
         ([BINARY, "element vertex 0", "property float x"], b"", "have no y and no z"),
         ([BINARY, "element vertex 1", *XYZ, LIST], b"\0" * 99, "'i' of the PLY file's points is a list"),
@@ -58,6 +62,21 @@ def test_a_damaged_file_is_one_sentence(ply, head, body, sentence):
 def test_another_kind_of_file_is_told_so(tmp_path, content):
     (tmp_path / "a.ply").write_bytes(content)
     with pytest.raises(ValueError, match="does not begin with the line 'ply'"):
+        read_contents(tmp_path / "a.ply")
+
+
+@pytest.mark.parametrize(
+    ("content", "sentence"),
+    [
+        (b"\x1f\x8b\x08", "compressed with gzip; unpack it"),
+        ("ply\nformat".encode("utf-16"), "UTF-16 text; save it as"),
+        (b"version https://git-lfs.github.com/spec/v1", "pointer of Git LFS"),
+        (b"<!DOCTYPE html>", "web page"),
+    ],
+)
+def test_what_it_is_instead_is_told(tmp_path, content, sentence):
+    (tmp_path / "a.ply").write_bytes(content)
+    with pytest.raises(ValueError, match=sentence):
         read_contents(tmp_path / "a.ply")
 
 
