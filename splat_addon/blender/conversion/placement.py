@@ -14,14 +14,20 @@ from mathutils import Matrix
 _ROUNDING = 1e-5
 
 
+def finite_matrix(matrix_world: Matrix) -> np.ndarray:
+    """(4, 4) float64. Raises ValueError if it is not finite."""
+    matrix = np.array(matrix_world, np.float64)
+    if not np.isfinite(matrix).all():
+        raise ValueError("The object's transform is not finite; clear its location, rotation and scale.")
+    return matrix
+
+
 def without_shear(matrix_world: Matrix) -> tuple[Matrix, np.ndarray | None]:
     """The nearest matrix without shear, and the (3, 3) float64 remainder, None if there is none.
 
     Their product is `matrix_world`. Raises ValueError for a matrix that is not finite or flattens the object.
     """
-    whole = np.array(matrix_world, np.float64)
-    if not np.isfinite(whole).all():
-        raise ValueError("The object's transform is not finite; clear its location, rotation and scale.")
+    whole = finite_matrix(matrix_world)
     if min(abs(s) for s in matrix_world.to_scale()) == 0.0:
         raise ValueError("The object's scale is 0 along an axis; set all three away from 0.")
     plain = Matrix.LocRotScale(*matrix_world.decompose())

@@ -17,6 +17,7 @@ from ...rendering import Instance, Light, Scene
 from ...rendering.detail.levels import replaced
 from ...streaming import Stream
 from ...surfels import Surfels
+from ..conversion.placement import finite_matrix
 from ..conversion.shape_following import not_bent
 from ..conversion.source_record import is_stood_in, sources_in
 from ..geometry.attributes import Points, has_surfels, has_surfels_beside_faces, have_same_values, read_stored
@@ -136,61 +137,92 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
 
     live_meshes: keeps the meshes that are not surfels.
     """
-    notes, bpy_scene, view_layer = Notes(), depsgraph.scene, depsgraph.view_layer_eval
-    override = override_of(depsgraph)
+    notes, bpy_scene = Notes(), depsgraph.scene
     for sentence in passed_over.of_scene(bpy_scene):
         notes.add(sentence)
-    stood_in = sources_in(bpy_scene.original)
-    surfels, made, (lights, light_sets) = [], set(), _lights(depsgraph, notes)
+    lights, light_sets = _lights(depsgraph, notes)
+    things = _Things(depsgraph, store, live_meshes, light_sets, notes)
     for entry in depsgraph.object_instances:
-        object_, matrix = entry.object, np.array(entry.matrix_world, np.float64)
-        if not entry.show_self or not (view_layer.use_solid and _is_seen(entry, depsgraph, notes)):
-            continue
-        try:
-            what = _content(entry)
-            if what:
-                fields = {
-                    "light_set": light_sets.of_instance(entry),
-                    "casts_shadow": object_.visible_shadow,
-                    "may_change": may_change(entry),
-                    "name": object_.name,
-                    "index": object_.pass_index,
-                    "is_holdout": owner_of(entry).holdout_get(view_layer=depsgraph.view_layer),
-                }
-                stream = _stream_of(object_.original, store, notes) if {"surfels", "shown"} & {*what} else None
-                if stream is not None:
-                    surfels += _streamed(object_, stream, depsgraph, matrix, fields, store, notes, override)
-                    continue
-                if {"surfels", "shown"} & {*what}:
-                    made.add(object_.original)
-                if "surfels" in what:
-                    with _attributes_of(object_) as points:
-                        # an evaluated point cloud that no modifier made has no session_uid of its own
-                        key = points.session_uid or points.original.session_uid
-                        kept = store.get(points, key, points.name_full)
-                    surfels += _instances(object_, kept, depsgraph, matrix, fields, store, notes, override)
-                if "shown" in what:
-                    source, owner = entry.instance_object or object_, object_.original
-                    with shown_points(source) as points:
-                        kept = store.get(points, object_.data.session_uid, owner.name_full, is_solid(owner))
-                    surfels += _instances(object_, kept, depsgraph, matrix, fields, store, notes, override)
-                owner, form = owner_of(entry), form_of(entry, bpy_scene) if "faces" in what else _NO_FORM
-                if form.kind != "HIDDEN" and not any(is_stood_in(each, stood_in) for each in asked_of(entry)):
-                    live_meshes.add(object_, owner, Place(matrix, fields, form, detail_of(owner)), override)
-                if "points" in what:
-                    notes.add(_BARE_POINTS)
-            elif object_.type in _NOT_DRAWN and not shows_as_points(object_.original):
-                notes.add(_not_drawn(object_))
-        except ValueError as error:
-            notes.leave_out(object_.name, error)
-    for sentence in sorted(filter(None, (not_bent(each, depsgraph) for each in made))):
+        if entry.show_self and depsgraph.view_layer_eval.use_solid and _is_seen(entry, depsgraph, notes):
+            try:
+                things.add(entry)
+            except ValueError as error:
+                notes.leave_out(entry.object.name, error)
+    for sentence in sorted(filter(None, (not_bent(each, depsgraph) for each in things.made))):
         notes.add(sentence)
     sampled, polygons = live_meshes.instances(
         depsgraph, density_of_meshes(bpy_scene), are_meshes_texture_mapped(bpy_scene), notes
     )
     lights = (replace(light, receivers=light_sets.lit_by(number)) for number, light in enumerate(lights))
-    things = Scene((*surfels, *sampled), tuple(lights), polygons=tuple(polygons))
-    return store.world.around(things, _world_of(depsgraph), notes), notes
+    scene = Scene((*things.surfels, *sampled), tuple(lights), polygons=tuple(polygons))
+    return store.world.around(scene, _world_of(depsgraph), notes), notes
+
+
+class _Things:
+    """What the entries of a depsgraph show.
+
+    surfels: instances of those that are surfels; meshes are added to `live_meshes`. made: the objects of the former in
+        the .blend, without those whose surfels are in files.
+    """
+
+    def __init__(
+        self,
+        depsgraph: bpy.types.Depsgraph,
+        store: SurfelStore,
+        live_meshes: LiveMeshes,
+        light_sets: LightSets,
+        notes: Notes,
+    ):
+        self.surfels: list[Instance] = []
+        self.made: set[bpy.types.Object] = set()
+        self._depsgraph, self._store, self._live_meshes = depsgraph, store, live_meshes
+        self._light_sets, self._notes = light_sets, notes
+        self._override = override_of(depsgraph)
+        self._stood_in = sources_in(depsgraph.scene.original)
+
+    def add(self, entry: bpy.types.DepsgraphObjectInstance) -> None:
+        """Add a visible entry. Raises ValueError with a sentence if it cannot be drawn."""
+        object_, what = entry.object, _content(entry)
+        if not what:
+            if object_.type in _NOT_DRAWN and not shows_as_points(object_.original):
+                self._notes.add(_not_drawn(object_))
+            return
+        matrix = finite_matrix(entry.matrix_world)
+        fields = {
+            "light_set": self._light_sets.of_instance(entry),
+            "casts_shadow": object_.visible_shadow,
+            "may_change": may_change(entry),
+            "name": object_.name,
+            "index": object_.pass_index,
+            "is_holdout": owner_of(entry).holdout_get(view_layer=self._depsgraph.view_layer),
+        }
+        if {"surfels", "shown"} & {*what}:
+            rest = self._depsgraph, matrix, fields, self._store, self._notes, self._override
+            stream = _stream_of(object_.original, self._store, self._notes)
+            if stream is not None:
+                self.surfels += _streamed(object_, stream, *rest)
+                return
+            self.made.add(object_.original)
+            for kind in what:
+                if kind in ("surfels", "shown"):
+                    self.surfels += _instances(object_, self._kept(entry, kind), *rest)
+        owner = owner_of(entry)
+        form = form_of(entry, self._depsgraph.scene) if "faces" in what else _NO_FORM
+        if form.kind != "HIDDEN" and not any(is_stood_in(each, self._stood_in) for each in asked_of(entry)):
+            self._live_meshes.add(object_, owner, Place(matrix, fields, form, detail_of(owner)), self._override)
+        if "points" in what:
+            self._notes.add(_BARE_POINTS)
+
+    def _kept(self, entry: bpy.types.DepsgraphObjectInstance, kind: str) -> tuple[Surfels | None, int, int]:
+        """What the store has of an entry's surfels, or of those that are shown as points."""
+        object_ = entry.object
+        if kind == "shown":
+            owner = object_.original
+            with shown_points(entry.instance_object or object_) as points:
+                return self._store.get(points, object_.data.session_uid, owner.name_full, is_solid(owner))
+        with _attributes_of(object_) as points:
+            # an evaluated point cloud that no modifier made has no session_uid of its own
+            return self._store.get(points, points.session_uid or points.original.session_uid, points.name_full)
 
 
 def _world_of(depsgraph: bpy.types.Depsgraph) -> bpy.types.World | None:
@@ -219,7 +251,7 @@ def _lights(depsgraph: bpy.types.Depsgraph, notes: Notes) -> tuple[list[Light], 
     for entry in depsgraph.object_instances:
         if entry.object.type == "LIGHT" and entry.show_self:
             try:
-                light = light_of(entry.object.data, np.array(entry.matrix_world, np.float64), notes)
+                light = light_of(entry.object.data, finite_matrix(entry.matrix_world), notes)
             except ValueError as error:
                 notes.leave_out(entry.object.name, error)
                 continue

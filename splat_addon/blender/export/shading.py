@@ -152,7 +152,7 @@ def _mean(materials: list[Material], mixed: list[Part]) -> Material:
 def _made(shader: Shader, material: bpy.types.Material, notes, own: Collection[str]) -> Material:
     """The material of one of its shaders."""
     fields, make = _SHADERS[shader.node.type]
-    plain = {name: _value(shader, name) for name in fields}
+    plain = _in_range({name: _value(shader, name) for name in fields}, material, notes)
     if emission := [name for name, field in fields.items() if field == "emission"]:
         sent = finite_radiance(_sent(plain, *emission), f"The material {material.name!r}", notes)
         plain |= dict(zip(emission, (sent, 1.0), strict=True))
@@ -179,10 +179,49 @@ def _value(shader: Shader, name: str):
     return value[0] if len(value) == 1 else value
 
 
+#: A number that no surface needs, and whose square float32 still holds.
+_HUGE = 1e15
+
+#: socket -> the range of its numbers, as in Cycles, where NaN counts as the least, too. There, coat and sheen may cover
+#: more than all of a surface.
+_RANGES = {
+    "Roughness": (0.0, 1.0),
+    "Metallic": (0.0, 1.0),
+    "IOR": (1e-5, 1e5),
+    "Specular IOR Level": (0.0, _HUGE),
+    "Specular Tint": (0.0, _HUGE),
+    "Coat Weight": (0.0, 1.0),
+    "Coat Roughness": (0.0, 1.0),
+    "Coat IOR": (1.0, 1e5),
+    "Coat Tint": (0.0, _HUGE),
+    "Sheen Weight": (0.0, 1.0),
+    "Sheen Roughness": (0.0, 1.0),
+    "Sheen Tint": (0.0, _HUGE),
+}
+
+
+def _in_range(plain: dict, material: bpy.types.Material, notes) -> dict:
+    """The sockets' values with numbers outside their range replaced by its nearest end, and a note on those."""
+    moved = []
+    for name in plain.keys() & _RANGES:
+        given, (least, greatest) = np.array(plain[name], np.float64), _RANGES[name]
+        taken = np.clip(np.where(np.isnan(given), least, given), least, greatest)
+        if not np.array_equal(taken, given):
+            moved.append(f"{name} {_number(given)} counts as {_number(taken)}")
+            plain[name] = tuple(taken.tolist()) if taken.ndim else float(taken)
+    if moved:
+        notes.add(f"The material {material.name!r} has numbers that no surface has: {', '.join(sorted(moved))}")
+    return plain
+
+
+def _number(value: np.ndarray) -> str:
+    return ", ".join(f"{number:g}" for number in value.ravel())
+
+
 def _principled(plain: dict) -> Material:
     ior = _levelled(plain["IOR"], plain["Specular IOR Level"])
     sent = _sent(plain, "Emission Color", "Emission Strength")
-    finish = Finish(specular_tint=_positive(plain["Specular Tint"]), **_coat(plain), **_sheen(plain))
+    finish = Finish(specular_tint=plain["Specular Tint"][:3], **_coat(plain), **_sheen(plain))
     return Material(plain["Roughness"], plain["Metallic"], ior, sent, finish=finish)
 
 
@@ -191,10 +230,10 @@ def _coat(plain: dict) -> dict:
     if not plain["Coat Weight"] > 0:
         return {}
     return {
-        "coat": min(plain["Coat Weight"], 1.0),
-        "coat_roughness": max(plain["Coat Roughness"], 0.0),
-        "coat_ior": max(plain["Coat IOR"], 1.0),
-        "coat_tint": _positive(plain["Coat Tint"]),
+        "coat": plain["Coat Weight"],
+        "coat_roughness": plain["Coat Roughness"],
+        "coat_ior": plain["Coat IOR"],
+        "coat_tint": plain["Coat Tint"][:3],
     }
 
 
@@ -203,15 +242,10 @@ def _sheen(plain: dict) -> dict:
     if not plain["Sheen Weight"] > 0:
         return {}
     return {
-        "sheen": min(plain["Sheen Weight"], 1.0),
-        "sheen_roughness": max(plain["Sheen Roughness"], 0.0),
-        "sheen_tint": _positive(plain["Sheen Tint"]),
+        "sheen": plain["Sheen Weight"],
+        "sheen_roughness": plain["Sheen Roughness"],
+        "sheen_tint": plain["Sheen Tint"][:3],
     }
-
-
-def _positive(color) -> tuple[float, float, float]:
-    """A colour as Cycles takes it: negative channels are 0."""
-    return tuple(max(channel, 0.0) for channel in color[:3])
 
 
 def _sent(plain: dict, color: str, strength: str) -> tuple[float, float, float]:
@@ -265,5 +299,7 @@ _SHADERS = {
 
 def _levelled(ior: float, level: float) -> float:
     """The index of refraction whose reflectance at normal incidence is that of `ior` times 2 `level`, as in Cycles."""
-    root = min(2 * level * reflectance(ior), 0.999) ** 0.5
+    if level == 0.5:
+        return ior
+    root = min(2 * level * reflectance(ior), 0.99) ** 0.5
     return (1 + root) / (1 - root)

@@ -118,7 +118,10 @@ def _share(progress, turn: int, count: int):
 
 
 def _faces(panorama: Panorama, place) -> list[_Face]:
-    """The faces that are visible. place: in each of the panorama's pixels."""
+    """The faces that are visible; if none is, a small view that no pixel uses, which tells what a frame has.
+
+    place: in each of the panorama's pixels.
+    """
     found = [([], []) for _ in _FACES]
     width, height = panorama.size
     rows = max(_BLOCK // width, 1)
@@ -130,11 +133,13 @@ def _faces(panorama: Panorama, place) -> list[_Face]:
             here = np.flatnonzero(owner == number)
             pixels.append(here + first * width)
             looks.append(directions[here] @ _FACES[number, :2].T / along[here, number, None])
-    return [
+    views = cube_views(panorama, DENSITY)
+    visible = [
         _face(view, np.concatenate(pixels), np.concatenate(looks))
-        for view, (pixels, looks) in zip(cube_views(panorama, DENSITY), found, strict=True)
+        for view, (pixels, looks) in zip(views, found, strict=True)
         if any(map(len, pixels))
     ]
+    return visible or [_Face(views[0].cropped(0, 0, _STEP, _STEP), np.zeros(0, np.int64), np.zeros((0, 2)))]
 
 
 def cube_views(panorama: Panorama, density: float) -> list[Camera]:

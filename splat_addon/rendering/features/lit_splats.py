@@ -9,6 +9,7 @@ lit at samples, and colours blend (Guennebaud et al. 2006, section 5.1).
 from __future__ import annotations
 
 from ..plan.graph import Part, Pass, Texture
+from ..scene import Instance
 from ..shading_models import ShadingModel, get_shading_model
 from ..upload.packing import SPLATS_PER_ROW, row_count
 from ..upload.parts import largest_part
@@ -28,6 +29,9 @@ def wanted(planning) -> bool:
         return False
     if get_shading_model(planning.settings.shading).is_diagnostic:
         planning.skip("lighting of splats", f"{planning.settings.shading} shows how splats add up")
+        return False
+    if not any(isinstance(placed, Instance) for placed in planning.shown):
+        planning.skip("lighting of splats", "the scene has none")
         return False
     planning.has("LIT_SPLATS", "each splat is lit, and colours blend")
     return True

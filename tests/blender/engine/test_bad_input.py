@@ -145,7 +145,7 @@ def test_flattened_objects_are_counted_and_left_out(scale, add_surfels, assert_g
 def test_an_object_at_an_unusable_place_is_named_and_left_out(add_surfels, assert_good_is_drawn, said):
     add_surfels([(0, 0, 1)], size=2, name="lost").location.x = NAN
     assert_good_is_drawn()
-    assert "Warning: lost is left out: An instance's matrix_world must be 4 x 4 finite numbers" in said()
+    assert "Warning: lost is left out: The object's transform is not finite" in said()
 
 
 @pytest.mark.parametrize("size", [1e20, 1e30, 3e38])
@@ -219,6 +219,46 @@ def test_a_light_of_zero_scale_does_no_harm(kind, scene, assert_good_is_drawn):
     light.scale = (0, 0, 0)
     scene.collection.objects.link(light)
     assert_good_is_drawn()
+
+
+@pytest.mark.parametrize("scale", [NAN, INFINITE])
+def test_a_light_whose_transform_is_not_finite_is_named_and_left_out(scale, scene, assert_good_is_drawn, said):
+    light = bpy.data.objects.new("lost", bpy.data.lights.new("lost", "SPOT"))
+    light.scale.x, light.rotation_euler.z, light.delta_scale.x = scale, 1, 1e9
+    scene.collection.objects.link(light)
+    assert_good_is_drawn()
+    assert "Warning: lost is left out: The object's transform is not finite; clear its location" in said()
+
+
+#: socket -> the value that Cycles takes instead, where others are given
+TAKEN = {
+    "Specular IOR Level": {-1: 0, NAN: 0},
+    "IOR": {-1: 1e-5, 0: 1e-5},
+    "Roughness": {-2: 0, 3: 1, NAN: 0},
+    "Metallic": {-2: 0, 1e30: 1},
+    "Coat Weight": {NAN: 0},
+    "Coat IOR": {0: 1, -3e38: 1},
+}
+
+
+def test_numbers_of_a_material_beyond_their_range_are_named_and_drawn_as_cycles_draws_them(good, scene, picture, said):
+    material = bpy.data.materials.new("odd")
+    if bpy.app.version < (5, 0, 0):
+        material.use_nodes = True
+    inputs = material.node_tree.nodes["Principled BSDF"].inputs
+    good.data.materials.append(material)
+    scene.surfel_splatting.shading = "principled"
+    scene.collection.objects.link(bpy.data.objects.new("sun", bpy.data.lights.new("sun", "SUN")))
+    for name, pairs in TAKEN.items():
+        before = inputs[name].default_value
+        for wrong, taken in pairs.items():
+            inputs[name].default_value = wrong
+            drawn, text = picture(), said()
+            assert f"The material 'odd' has numbers that no surface has: {name} {wrong:g} counts as {taken:g}" in text
+            inputs[name].default_value = taken
+            assert np.array_equal(drawn, picture()) and np.isfinite(drawn).all()
+        inputs[name].default_value = before
+        said()
 
 
 def test_a_light_with_an_unusable_energy_is_named_and_left_out(scene, assert_good_is_drawn, said):
