@@ -293,11 +293,16 @@ def valid_surfels(origin=(0.0, 0.0, 0.0), is_solid=False, **arrays) -> tuple[Sur
     arrays = _shaped(arrays)
     for name in ("rotations", "normals"):
         arrays[name] = _normalised(arrays[name])
-    good = np.logical_and.reduce(list(_row_checks(arrays).values()))
+    good = are_usable(arrays)
     skipped = int(len(good) - np.count_nonzero(good))
     if skipped:
         arrays = {name: array[good] for name, array in arrays.items()}
     return Surfels(origin=origin, is_solid=is_solid and not skipped, **arrays), skipped
+
+
+def are_usable(arrays: dict[str, np.ndarray]) -> np.ndarray:
+    """(N,) bool: which rows of some fields `Surfels` would take. arrays: in their shapes and types."""
+    return np.logical_and.reduce(list(_row_checks(arrays).values()))
 
 
 def concatenate(parts: list[Surfels]) -> Surfels:

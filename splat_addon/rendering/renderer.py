@@ -257,6 +257,7 @@ class Renderer:
             "instances_hidden": 0,
             "surfels_coarse": 0,
             "short_of_memory": self.streamed.short,
+            "unread": self.streamed.unread,
             "layers": 0,
             "culled": frame_plan.facts.get("culled", 0),
             "culled_of": frame_plan.facts.get("culled_of", 0),

@@ -3,12 +3,23 @@
 
 A file (`layout`) holds the rows of all surfels and merged surfels in the order of their blocks, and the table of blocks
 of a hierarchy. `writing` makes it out of core, from portions of neighbours (`buckets`), each with a hierarchy of its
-own. `block_file` opens it, `pages` keeps the rows that were read last within a budget of memory, and `stream` answers a
-view with ordinary `Surfels`; blocks that have not been read yet are replaced by their parents.
+own. `directory` and `block_file` open it, `table` and `pages` keep the blocks and rows that were read last within a
+budget of memory, and `stream` answers a view with ordinary `Surfels`; blocks that have not been read yet, or cannot be
+read, are replaced by their parents. `checking` reads a whole file and compares it with its checksums.
 """
 
-from .block_file import BlockFile, described
-from .stream import Stream
+from .block_file import BlockFile
+from .checking import check, described
+from .stream import Stream, Unreadable
 from .writing import PORTION, WritingCancelled, write_blocks
 
-__all__ = ["PORTION", "BlockFile", "Stream", "WritingCancelled", "described", "write_blocks"]
+__all__ = [
+    "PORTION",
+    "BlockFile",
+    "Stream",
+    "Unreadable",
+    "WritingCancelled",
+    "check",
+    "described",
+    "write_blocks",
+]

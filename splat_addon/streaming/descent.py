@@ -14,37 +14,47 @@ import numpy as np
 from ..hierarchy import Sight
 from ..hierarchy.blocks import Blocks, ranges
 from ..hierarchy.cuts import Boxes, may_be_seen, pixels_of_errors
-from .pages import Pages
+from .pages import Pages, Readable
+from .table import Table
 
 
 class Descent(NamedTuple):
     """drawn: numbers of the blocks to draw. wanted: pages that would make it finer, those of the largest errors
-    first."""
+    first. is_torn: whether some are coarser than the view asks for because those below them cannot be read.
+    """
 
     drawn: np.ndarray
     wanted: np.ndarray
+    is_torn: bool
 
 
-def descend(blocks: Blocks, pages: Pages, sight: Sight, beside: float | None, most: int | None = None) -> Descent:
+def descend(
+    table: Table, pages: Pages | Readable, sight: Sight, beside: float | None, most: int | None = None
+) -> Descent:
     """The cut as far as pages are there, which are noted as used.
 
     beside: blocks outside the picture may be off by this many times the tolerance; None leaves them out. most: rows
         that it may have, if the roots have no more; the blocks of the largest errors of each level become finer.
+    Whatever the table says, it ends, and takes memory in proportion to the file: see `_Bounds`.
     """
-    front, drawn, wanted, urgency = np.arange(int(blocks.roots)), [], [], []
-    front, pixels = _errors(blocks, front, sight, beside)
+    front, drawn, wanted, urgency, is_torn = np.arange(int(table.blocks.roots)), [], [], [], False
+    blocks, bounds = table.blocks, _Bounds(table)
+    are_counted, pixels = _errors(blocks, front, sight, beside)
+    front = front[are_counted]
     room = np.inf if most is None else most - _rows(blocks, front).sum()
     while len(front):
         pages.use(blocks.first[front], blocks.last[front])
         starts, ends = blocks.first_child[front], blocks.last_child[front]
         is_fine = (pixels <= sight.tolerance) | (starts == ends)
+        are_lost = ~bounds.load(starts[~is_fine], ends[~is_fine])
+        if are_lost.any():
+            is_torn, is_fine[~is_fine] = True, are_lost
         drawn.append(front[is_fine])
         coarse, pixels = front[~is_fine], pixels[~is_fine]
         counts = ends[~is_fine] - starts[~is_fine]
         children, owners = ranges(starts[~is_fine], counts), np.repeat(np.arange(len(coarse)), counts)
-        kept, own_pixels = _errors(blocks, children, sight, beside)
-        if len(kept) < len(children):
-            owners = owners[np.isin(children, kept, assume_unique=True)]
+        are_counted, own_pixels = _errors(blocks, children, sight, beside)
+        kept, owners = children[are_counted], owners[are_counted]
         first, last = blocks.first[kept], blocks.last[kept]
         is_here = pages.have(first, last)
         lacks = np.zeros(len(coarse), bool)
@@ -55,14 +65,36 @@ def descend(blocks: Blocks, pages: Pages, sight: Sight, beside: float | None, mo
         room -= more[goes].sum()
         drawn.append(coarse[~goes])
         is_wanted = ~is_here & fits[owners]
+        is_torn |= bool(pages.are_lost(first[is_wanted], last[is_wanted]).any())
         wanted.append(kept[is_wanted])
         urgency.append(pixels[owners[is_wanted]])
         goes_on = goes[owners]
         front, pixels = kept[goes_on], own_pixels[goes_on]
     if not drawn:
-        return Descent(front, front)
+        return Descent(front, front, False)
     rows = np.concatenate(wanted)[np.argsort(-np.concatenate(urgency), kind="stable")]
-    return Descent(np.concatenate(drawn), pages.missing(blocks.first[rows], blocks.last[rows]))
+    return Descent(np.concatenate(drawn), pages.missing(blocks.first[rows], blocks.last[rows]), is_torn)
+
+
+class _Bounds:
+    """Loads the children of a descent's levels, as long as these are no more blocks, with no more rows, than the file
+    has: in a tree, each block has one parent, and each row is in one block."""
+
+    def __init__(self, table: Table):
+        self._table, roots = table, slice(int(table.blocks.roots))
+        self._blocks = len(table.blocks)
+        self._rows = table.rows - int((table.blocks.last[roots] - table.blocks.first[roots]).sum())
+
+    def load(self, first: np.ndarray, last: np.ndarray) -> np.ndarray:
+        """As `Table.load`; none, if these runs would be too much."""
+        self._blocks -= int((last - first).sum())
+        nothing = np.zeros(len(first), bool)
+        if self._blocks < 0:
+            return nothing
+        are_here = self._table.load(first, last)
+        children = ranges(first[are_here], (last - first)[are_here])
+        self._rows -= int(_rows(self._table.blocks, children).sum())
+        return are_here if self._rows >= 0 else nothing
 
 
 def _rows(blocks: Blocks, numbers: np.ndarray) -> np.ndarray:
@@ -80,16 +112,15 @@ def _fits(more: np.ndarray, pixels: np.ndarray, room: float) -> np.ndarray:
 
 
 def _errors(blocks: Blocks, rows: np.ndarray, sight: Sight, beside: float | None) -> tuple[np.ndarray, np.ndarray]:
-    """The blocks that count, and the error of each in pixels."""
+    """(n,) bool: which blocks count; and the errors of these in pixels."""
     boxes = Boxes.of(blocks, rows)
     is_seen = may_be_seen(blocks, rows, boxes, sight)
     if beside is None:
-        rows = rows[is_seen]
-        return rows, pixels_of_errors(blocks, rows, boxes.some(is_seen), sight)
+        return is_seen, pixels_of_errors(blocks, rows[is_seen], boxes.some(is_seen), sight)
     pixels = pixels_of_errors(blocks, rows, boxes, sight)
     outside = np.flatnonzero(~is_seen)
     pixels[outside] = _pixels_all_round(blocks, rows[outside], sight) / beside
-    return rows, pixels
+    return np.ones(len(rows), bool), pixels
 
 
 def _pixels_all_round(blocks: Blocks, rows: np.ndarray, sight: Sight) -> np.ndarray:

@@ -10,10 +10,21 @@ the directory's offset and length (uint64 each). The *directory* is at the end o
      "arrays": {"rows": {"offset": o, "count": E}, "first": {"offset": o, "type": "<i8", "shape": [B]}, ...}}
 
 *rows* are E surfels and merged surfels; a row has the fields of `Surfels` one after another, with as many numbers as
-`fields` says, in the types of `Surfels`, all of them relative to the origin. The other arrays are the columns of
-`hierarchy.blocks.Blocks` for B blocks: first and last are a block's run of rows, first_child and last_child its run of
-blocks (int64), low, high, axes, angles, errors are float32. The first R blocks are the roots. Blocks without children
-hold the surfels themselves, and all of these together every surfel once, bit by bit as it was written.
+`fields` says, in the types of `Surfels`, all of them relative to the origin. Nine other arrays are the columns of
+`hierarchy.blocks.Blocks` for B blocks, in the types of `COLUMNS`: first and last are a block's run of rows, first_child
+and last_child its run of blocks, both with at most 1,024 entries; children come after their parents. The first R blocks
+are the roots. Blocks without children hold the surfels themselves, and all of these together every surfel once, bit by
+bit as it was written.
+
+Rows and blocks are read in *pages* of 1,024. The arrays row_sums and block_sums (uint32) have the CRC-32 of each page;
+that of a page of blocks goes over its part of the nine columns, one after another. Each of the two has its own CRC-32
+in the directory, as "checksum".
+
+A file is never trusted: types come from the code and not from the file, which only has to name the same ones, and
+every number is held against the file's real size, or against the number of rows or blocks, before it is used.
+
+Version 1, which was written until the end of 2026, is the same without the two arrays of sums. It is read with the
+same bounds; what damage leaves within them cannot be noticed.
 """
 
 from __future__ import annotations
@@ -21,7 +32,6 @@ from __future__ import annotations
 import json
 import struct
 import zlib
-from pathlib import Path
 from typing import BinaryIO
 
 import numpy as np
@@ -29,20 +39,37 @@ import numpy as np
 from ..surfels import LAYOUT, OPTIONAL_LAYOUT, Surfels, concatenate, field_values
 
 SUFFIX = ".surfelblocks"
-VERSION = 1
+VERSION = 2
+#: The version without checksums, which is read too.
+UNCHECKED_VERSION = 1
 ALIGNMENT = 64
-_MAGIC = b"SURFELBL"
-_HEAD = struct.Struct("<8sIIQQ")
-#: The longest directory that is read; a written one has some 1,500 bytes.
-_LONGEST_DIRECTORY = 1 << 20
+#: Rows or blocks of a page, the least that is read: some 70 kB of rows. A block spans at most two pages of rows, and
+#: its children at most two pages of blocks.
+PAGE = 1024
+MAGIC = b"SURFELBL"
+HEAD = struct.Struct("<8sIIQQ")
 
-_FIELDS = {**LAYOUT, **OPTIONAL_LAYOUT}
+#: Fields that a row may have -> their number of columns and their type.
+FIELDS = {
+    name: (columns, np.dtype(kind).newbyteorder("<"))
+    for name, (columns, kind, *_) in {**LAYOUT, **OPTIONAL_LAYOUT}.items()
+}
+
+#: Columns of `Blocks` in the file -> their number of columns and their type.
+COLUMNS = {
+    **dict.fromkeys(("first", "last", "first_child", "last_child"), (1, np.dtype("<i8"))),
+    **dict.fromkeys(("low", "high", "axes"), (3, np.dtype("<f4"))),
+    "angles": (1, np.dtype("<f4")),
+    "errors": (3, np.dtype("<f4")),
+}
+#: Names and type of the arrays of checksums.
+SUMS, SUM = ("row_sums", "block_sums"), np.dtype("<u4")
 
 
 def row_type(names) -> np.dtype:
     """The type of a row that has these fields of `Surfels`, in their order there."""
-    columns = ((name, np.dtype(_FIELDS[name][1]).newbyteorder("<"), _FIELDS[name][0]) for name in _FIELDS)
-    return np.dtype([(name, kind, (count,) if count > 1 else ()) for name, kind, count in columns if name in names])
+    columns = ((name, kind, (count,) if count > 1 else ()) for name, (count, kind) in FIELDS.items() if name in names)
+    return np.dtype(list(columns))
 
 
 def as_rows(surfels: Surfels, kind: np.dtype) -> np.ndarray:
@@ -76,50 +103,36 @@ def finish(stream: BinaryIO, directory: dict) -> None:
     offset = align(stream)
     stream.write(text)
     stream.seek(0)
-    stream.write(_HEAD.pack(_MAGIC, VERSION, zlib.crc32(text), offset, len(text)))
+    stream.write(HEAD.pack(MAGIC, VERSION, zlib.crc32(text), offset, len(text)))
 
 
-def read_directory(path: Path) -> dict:
-    """The directory of a file. Raises OSError if the file cannot be read, ValueError with a sentence if it has another
-    format, another version, or is cut off or damaged."""
-    size = path.stat().st_size
-    with open(path, "rb") as stream:
-        head = stream.read(_HEAD.size)
-        if len(head) < _HEAD.size or not head.startswith(_MAGIC):
-            raise ValueError(f"{path.name} is not a file of surfels in blocks; store surfels in one first.")
-        _, version, checksum, offset, length = _HEAD.unpack(head)
-        if version != VERSION:
-            raise ValueError(
-                f"{path.name} has version {version} of the format, and this extension reads version {VERSION}; store "
-                "its surfels again."
-            )
-        if offset + length != size or length > _LONGEST_DIRECTORY:
-            raise ValueError(
-                f"{path.name} has {size:,} bytes where its head says {offset + length:,}: it is cut off or damaged; "
-                "copy or store it again."
-            )
-        stream.seek(offset)
-        text = stream.read(length)
-    if zlib.crc32(text) != checksum:
-        raise ValueError(f"{path.name} is damaged: the checksum of its directory is wrong; copy or store it again.")
-    directory = json.loads(text)
-    _check(path, directory, offset)
-    return directory
+class PageSums:
+    """The CRC-32 of each page of some arrays that have a row for the same things, and follow one another."""
 
+    def __init__(self):
+        self._sums: list[int] = []
+        self._size = self._place = 0
 
-def _check(path: Path, directory: dict, end: int) -> None:
-    """Raise ValueError if an array does not fit into the file, or a field is unknown."""
-    unknown = directory["fields"].keys() - _FIELDS.keys()
-    wrong = [n for n, columns in directory["fields"].items() if n in _FIELDS and columns != _FIELDS[n][0]]
-    if unknown or wrong:
-        raise ValueError(f"{path.name} has a field that surfels lack: {sorted([*unknown, *wrong])[0]}; store it again.")
-    for name, array in directory["arrays"].items():
-        if name == "rows":
-            size = array["count"] * row_type(directory["fields"]).itemsize
-        else:
-            size = int(np.prod(array["shape"])) * np.dtype(array["type"]).itemsize
-        if array["offset"] + size > end:
-            raise ValueError(f"{path.name} is damaged: its array {name} ends behind the file; store it again.")
+    def begin(self, row: int) -> None:
+        """Begin the next array. row: bytes of a row."""
+        self._size, self._place = PAGE * row, 0
+
+    def add(self, data: memoryview) -> None:
+        """Go on with some bytes of the array."""
+        while len(data):
+            number, done = divmod(self._place, self._size)
+            some = data[: self._size - done]
+            if number == len(self._sums):
+                self._sums.append(0)
+            self._sums[number] = zlib.crc32(some, self._sums[number])
+            self._place += len(some)
+            data = data[len(some) :]
+
+    def write(self, stream: BinaryIO) -> dict:
+        """Write the sums; returns their entry in the directory."""
+        offset, sums = align(stream), np.array(self._sums, SUM)
+        stream.write(sums.data)
+        return {"offset": offset, "type": SUM.str, "shape": [len(sums)], "checksum": zlib.crc32(sums.data)}
 
 
 def joined_rows(surfels: Surfels, nodes: Surfels, kind: np.dtype) -> np.ndarray:

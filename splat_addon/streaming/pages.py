@@ -6,33 +6,40 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..hierarchy.blocks import BLOCK_OF_SURFELS, ranges
+from ..hierarchy.blocks import ranges
 from .block_file import BlockFile
-
-#: Rows of a page: some 70 kB. A block spans at most two pages.
-PAGE = 1024
-assert BLOCK_OF_SURFELS <= PAGE
+from .layout import PAGE
+from .table import Table
 
 #: Pages besides the roots' that any budget has, so that something can be read.
 _FEWEST = 16
+#: Pages that are read at a time: some 4 MB.
+AT_ONCE = 64
 #: Rows that are gathered at a time, few enough for them to stay in the processor's cache.
 _PORTION = 1 << 14
 _FOR_EVER = np.iinfo(np.int64).max
 
 
 class Pages:
-    """most_bytes: the memory that rows may take. The roots' pages are read at once and stay."""
+    """most_bytes: the memory that rows may take. The roots' pages are read at once and stay.
 
-    def __init__(self, file: BlockFile, most_bytes: int):
+    Raises ValueError with a sentence if these cannot be read.
+    """
+
+    def __init__(self, file: BlockFile, table: Table, most_bytes: int):
         self._file = file
-        count, roots = -(-file.rows // PAGE), int(file.blocks.roots)
-        pinned = np.unique(self._of_rows(file.blocks.first[:roots], file.blocks.last[:roots]))
+        count, roots = -(-file.rows // PAGE), slice(file.roots)
+        pinned = np.unique(self._of_rows(table.blocks.first[roots], table.blocks.last[roots]))
         slots = min(max(most_bytes // (PAGE * file.kind.itemsize), len(pinned) + _FEWEST), count)
         # memory is taken from the system only as pages are filled
         self._rows = np.empty((slots, PAGE), file.kind)
         self._slots, self._pages = np.full(count, -1, np.int32), np.full(slots, -1)
         self._used, self._now = np.zeros(slots, np.int64), 1
-        self.install(pinned, self.read(pinned))
+        self._are_lost = np.zeros(count, bool)
+        for start in range(0, len(pinned), AT_ONCE):
+            self.fetch(pinned[start : start + AT_ONCE])
+        if self._are_lost.any():
+            raise ValueError(file.fault())
         self._used[self._slots[pinned]] = _FOR_EVER
 
     @property
@@ -43,6 +50,20 @@ class Pages:
     def have(self, first: np.ndarray, last: np.ndarray) -> np.ndarray:
         """(n,) bool: whether all rows of each run from first to last, at most a page long, are here."""
         return (self._slots[first // PAGE] >= 0) & (self._slots[(last - 1) // PAGE] >= 0)
+
+    def are_lost(self, first: np.ndarray, last: np.ndarray) -> np.ndarray:
+        """(n,) bool: whether some row of each run could not be read."""
+        return self._are_lost[first // PAGE] | self._are_lost[(last - 1) // PAGE]
+
+    def try_again(self) -> None:
+        """Forget what could not be read."""
+        self._are_lost[:] = False
+
+    def lose(self, first: np.ndarray, last: np.ndarray) -> None:
+        """Drop the pages of these runs, as if they could not be read."""
+        pages = np.unique(self._of_rows(first, last))
+        self._pages[self._slots[pages]] = -1
+        self._slots[pages], self._are_lost[pages] = -1, True
 
     def begin(self) -> None:
         """Begin a view: pages used from now on stay until the next begins."""
@@ -55,30 +76,22 @@ class Pages:
             self._used[slots] = np.maximum(self._used[slots], self._now)
 
     def missing(self, first: np.ndarray, last: np.ndarray) -> np.ndarray:
-        """The pages that these runs lack, each once, in the order of the runs."""
+        """The pages that these runs lack, each once, in the order of the runs, without those that cannot be read."""
         pages = np.stack([first // PAGE, (last - 1) // PAGE], axis=1).ravel()
-        pages = pages[self._slots[pages] < 0]
+        pages = pages[(self._slots[pages] < 0) & ~self._are_lost[pages]]
         return pages[np.sort(np.unique(pages, return_index=True)[1])]
 
     def room(self) -> int:
         """The number of pages that can be read without dropping one that this view uses."""
         return int(np.count_nonzero(self._used < self._now))
 
-    def read(self, pages: np.ndarray) -> np.ndarray:
-        """(n, PAGE) rows of these pages, from the file; another thread may call this. Raises OSError."""
-        rows = np.zeros((len(pages), PAGE), self._file.kind)
-        order = np.argsort(pages)
-        for run in np.split(order, np.flatnonzero(np.diff(pages[order]) != 1) + 1) if len(pages) else ():
-            first = int(pages[run[0]]) * PAGE
-            together = np.empty(min(len(run) * PAGE, self._file.rows - first), self._file.kind)
-            self._file.read_into(together, first)
-            for number, place in enumerate(run):
-                some = together[number * PAGE : (number + 1) * PAGE]
-                rows[place, : len(some)] = some
-        return rows
+    def fetch(self, pages: np.ndarray) -> None:
+        """Read pages, as many as there is room for; the least recently used ones are dropped."""
+        rows, are_good = self._file.read_rows(pages)
+        self._are_lost[pages[~are_good]] = True
+        self._install(pages[are_good], rows[are_good])
 
-    def install(self, pages: np.ndarray, rows: np.ndarray) -> None:
-        """Take pages that were read, as many as there is room for; the least recently used ones are dropped."""
+    def _install(self, pages: np.ndarray, rows: np.ndarray) -> None:
         is_new = self._slots[pages] < 0
         pages, rows = pages[is_new], rows[is_new]
         free = np.flatnonzero(self._used < self._now)
@@ -104,3 +117,19 @@ class Pages:
     @staticmethod
     def _of_rows(first: np.ndarray, last: np.ndarray) -> np.ndarray:
         return np.concatenate([first // PAGE, (last - 1) // PAGE])
+
+
+class Readable:
+    """Stands for pages as if all were here that can be read."""
+
+    def __init__(self, pages: Pages):
+        self.are_lost = pages.are_lost
+
+    def have(self, first: np.ndarray, last: np.ndarray) -> np.ndarray:
+        return ~self.are_lost(first, last)
+
+    def use(self, first: np.ndarray, last: np.ndarray) -> None:
+        pass
+
+    def missing(self, first: np.ndarray, last: np.ndarray) -> np.ndarray:
+        return np.zeros(0, int)

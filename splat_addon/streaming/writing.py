@@ -4,9 +4,7 @@
 from __future__ import annotations
 
 import os
-import shutil
 from collections.abc import Callable, Iterable
-from dataclasses import fields
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -19,14 +17,10 @@ from ..hierarchy.blocks import Blocks, ranges
 from ..interchange.whole_file import whole_file
 from ..surfels import Surfels
 from .buckets import Survey, filled, portions_of, surveyed
-from .layout import align, as_surfels, begin, finish, joined_rows
+from .layout import COLUMNS, FIELDS, PageSums, align, as_surfels, begin, finish, joined_rows
 
 #: Surfels of one hierarchy, and those that are best given at once.
 PORTION = 1 << 20
-
-#: Columns of `Blocks` -> their type in the file.
-COLUMNS = {f.name: "<i8" if "first" in f.name or "last" in f.name else "<f4" for f in fields(Blocks)}
-del COLUMNS["roots"]
 
 #: Called with the finished share (0 to 1) and the step; returning False cancels.
 Progress = Callable[[float, str], bool]
@@ -74,21 +68,23 @@ def write_blocks(
 
 def _write(stream: BinaryIO, survey: Survey, portions: Iterable[np.ndarray], folder: Path, told) -> None:
     begin(stream)
-    tables, done, written = _Tables(folder), 0, 0
+    tables, sums, done, written = _Tables(folder), PageSums(), 0, 0
     start = align(stream)
+    sums.begin(survey.kind.itemsize)
     for rows in portions:
         surfels = as_surfels(rows, survey.origin, survey.is_solid)
         hierarchy = build_hierarchy(surfels, partial(_tell, told, done, len(surfels)))
         rows = joined_rows(surfels, hierarchy.nodes, survey.kind)[hierarchy.entries]
-        stream.write(rows.view(np.uint8).data)
+        _add(stream, sums, rows)
         tables.add(hierarchy.blocks, rows, written)
         written += len(rows)
         done += len(surfels)
         told(done)
     # the roots' rows once more, side by side, so that whoever opens the file reads them at once
     roots = np.concatenate(tables.root_rows)
-    stream.write(roots.view(np.uint8).data)
+    _add(stream, sums, roots)
     arrays = {"rows": {"offset": start, "count": written + len(roots)}, **tables.write(stream, written)}
+    arrays["row_sums"], arrays["block_sums"] = sums.write(stream), tables.sums.write(stream)
     finish(
         stream,
         {
@@ -97,10 +93,17 @@ def _write(stream: BinaryIO, survey: Survey, portions: Iterable[np.ndarray], fol
             "is_solid": survey.is_solid,
             "is_transparent": survey.is_transparent,
             "roots": tables.roots,
-            "fields": {name: int(np.prod(survey.kind[name].shape, initial=1)) for name in survey.kind.names},
+            "fields": {name: FIELDS[name][0] for name in survey.kind.names},
             "arrays": arrays,
         },
     )
+
+
+def _add(stream: BinaryIO, sums: PageSums, rows: np.ndarray) -> None:
+    """Write some rows of the array that `sums` goes over."""
+    data = rows.view(np.uint8).reshape(-1).data
+    stream.write(data)
+    sums.add(data)
 
 
 def _tell(told: Callable[[float], None], before: int, count: int, share: float) -> None:
@@ -111,7 +114,7 @@ def _tell(told: Callable[[float], None], before: int, count: int, share: float) 
 class _Tables:
     """Collects the blocks of all portions: roots in memory, the others in files. Joined, all roots come first.
 
-    roots: their number. root_rows: rows of each portion's roots.
+    roots: their number. root_rows: rows of each portion's roots. sums: of the pages, once all is written.
     """
 
     def __init__(self, folder: Path):
@@ -119,12 +122,13 @@ class _Tables:
         self._roots: dict[str, list[np.ndarray]] = {name: [] for name in COLUMNS}
         self.root_rows: list[np.ndarray] = []
         self.roots = self._others = 0
+        self.sums = PageSums()
 
     def add(self, blocks: Blocks, rows: np.ndarray, before: int) -> None:
         """Add a portion's blocks. rows: the portion's. before: number of rows before it."""
         own = int(blocks.roots)
         self.root_rows.append(rows[ranges(blocks.first[:own], blocks.last[:own] - blocks.first[:own])])
-        for name, kind in COLUMNS.items():
+        for name, (_, kind) in COLUMNS.items():
             column = getattr(blocks, name).astype(kind)
             if name in ("first", "last"):
                 column += before
@@ -143,15 +147,13 @@ class _Tables:
         roots["last"] = written + np.cumsum(sizes)
         roots["first"] = roots["last"] - sizes
         entries = {}
-        for name, kind in COLUMNS.items():
-            offset, column = align(stream), roots[name]
-            more = self.roots if name in ("first_child", "last_child") else 0
-            stream.write((column + more).astype(kind).data)
+        for name, (columns, kind) in COLUMNS.items():
+            offset, shape = align(stream), [self.roots + self._others, *([columns] if columns > 1 else [])]
+            more = kind.type(self.roots if name in ("first_child", "last_child") else 0)
+            self.sums.begin(columns * kind.itemsize)
+            _add(stream, self.sums, roots[name].astype(kind) + more)
             with open(self._folder / name, "rb") as others:
-                if more:
-                    while len(some := np.fromfile(others, kind, 1 << 20)):
-                        stream.write((some + more).data)
-                else:
-                    shutil.copyfileobj(others, stream, 1 << 20)
-            entries[name] = {"offset": offset, "type": kind, "shape": [self.roots + self._others, *column.shape[1:]]}
+                while len(some := np.fromfile(others, kind, 1 << 20)):
+                    _add(stream, self.sums, some + more)
+            entries[name] = {"offset": offset, "type": kind.str, "shape": shape}
         return entries

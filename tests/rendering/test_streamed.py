@@ -205,7 +205,7 @@ def slow(monkeypatch):
     """Reading gives almost nothing at a time, and views do not wait."""
     monkeypatch.setattr("splat_addon.rendering.viewport.refinement._READING", 0.0)
     monkeypatch.setattr("splat_addon.rendering.detail.streamed._READING", 1e-6)
-    monkeypatch.setattr("splat_addon.streaming.stream._AT_ONCE", 2)
+    monkeypatch.setattr("splat_addon.streaming.stream.AT_ONCE", 2)
 
 
 def shown_by(view, device, scene, camera, settings):

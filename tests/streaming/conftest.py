@@ -1,13 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A ball of surfels, files that it is stored in, and views of it."""
 
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from splat_addon.hierarchy import Sight
 from splat_addon.quaternions import axes_quaternions
 from splat_addon.streaming import write_blocks
+from splat_addon.streaming.table import Table
 from splat_addon.surfels import Surfels, portions
+
+SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
+if str(SCRIPTS) not in sys.path:
+    sys.path.append(str(SCRIPTS))
 
 
 def ball(count=30_000, **fields):
@@ -42,6 +50,14 @@ def sorted_rows(surfels):
     columns = [np.ascontiguousarray(a).reshape(len(surfels), -1).view(np.uint8) for a in surfels.arrays().values()]
     rows = np.concatenate(columns, axis=1)
     return rows[np.lexsort(rows.T)]
+
+
+def whole_table(file):
+    """All blocks of a file."""
+    table = Table(file, 1 << 30)
+    numbers = np.arange(file.size)
+    assert table.load(numbers, numbers + 1).all()
+    return table.blocks
 
 
 @pytest.fixture(scope="session")

@@ -10,7 +10,9 @@ from hypothesis import strategies as st
 
 from splat_addon.hierarchy import build_hierarchy, cut_blocks, entries_of
 from splat_addon.streaming import BlockFile, Stream, write_blocks
-from splat_addon.streaming.pages import PAGE, Pages
+from splat_addon.streaming.layout import PAGE
+from splat_addon.streaming.pages import Pages
+from splat_addon.streaming.table import Table
 from splat_addon.surfels import concatenate
 
 from .conftest import ball, sight, sorted_rows
@@ -94,7 +96,7 @@ def covered(surfels, eye):
 
 def test_there_is_no_hole_while_blocks_are_missing(many_portions, monkeypatch):
     """Time for one read, then for another: the ball stays closed, and becomes finer."""
-    monkeypatch.setattr("splat_addon.streaming.stream._AT_ONCE", 3)
+    monkeypatch.setattr("splat_addon.streaming.stream.AT_ONCE", 3)
     stream, counts, view = Stream(many_portions, PLENTY), [], sight((0, 0, 2), 0.3)
     while True:
         seen = stream.ahead(view, None, 1e-9).result()
@@ -119,7 +121,7 @@ def test_a_view_in_a_hurry_has_no_more_surfels_than_it_asks_for_and_no_hole(many
 
 
 def test_nothing_is_gathered_before_the_whole_is_read_if_only_that_is_wanted(many_portions, monkeypatch):
-    monkeypatch.setattr("splat_addon.streaming.stream._AT_ONCE", 3)
+    monkeypatch.setattr("splat_addon.streaming.stream.AT_ONCE", 3)
     stream, seen, view = Stream(many_portions, PLENTY), [], sight((0, 0, 2), 0.3)
     while not seen or not seen[-1].is_whole:
         seen.append(stream.ahead(view, None, 1e-9, needs_whole=True).result())
@@ -192,7 +194,7 @@ def test_a_small_file_works_with_no_memory_at_all(tmp_path):
 
 def test_the_pages_used_least_recently_make_room(many_portions):
     file = BlockFile(many_portions)
-    pages = Pages(file, 0)
+    pages = Pages(file, Table(file, 0), 0)
     first = np.arange(0, file.rows, PAGE)
     others = np.flatnonzero(~pages.have(first, first + 1))
     room = pages.room()
@@ -204,10 +206,10 @@ def test_the_pages_used_least_recently_make_room(many_portions):
 
     for page in kept:
         pages.begin()
-        pages.install(np.array([page]), pages.read(np.array([page])))
+        pages.fetch(np.array([page]))
     pages.begin()
     pages.use(kept[:1] * PAGE, kept[:1] * PAGE + 1)
     pages.begin()
-    pages.install(new, pages.read(new))
+    pages.fetch(new)
     assert there(kept[0]) and there(new[0]) and not there(kept[1])
     assert all(map(there, kept[2:]))

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import sys
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import bpy
@@ -123,6 +123,8 @@ def _picture(engine, depsgraph, resources: _Resources, settings, turn: tuple[int
             part=rendered_part(scene.render),
             is_repeatable=True,
         )
+    if frame.stats["unread"] and not engine.is_preview and stops_where_broken(scene):
+        raise ValueError(_left_out_sentence(frame.stats["unread"]))
     for sentence in depth_of_field_notes(camera, settings.samples):
         notes.add(sentence)
     for sentence in motion_blur_notes(scene, depsgraph.view_layer, settings.samples):
@@ -132,7 +134,7 @@ def _picture(engine, depsgraph, resources: _Resources, settings, turn: tuple[int
     return frame, notes
 
 
-def _left_out_sentence(left_out: list[str]) -> str:
+def _left_out_sentence(left_out: Sequence[str]) -> str:
     more = f" (and {len(left_out) - 1:,} more)" if len(left_out) > 1 else ""
     return f"{left_out[0]}{more} Mend that, or set Broken Objects in the render properties to Warn."
 
@@ -143,6 +145,8 @@ def _tell(engine, frame: Frame, notes: Notes, resources: _Resources) -> None:
     notes.add(_COARSE, frame.stats["surfels_coarse"])
     for name in frame.stats["short_of_memory"]:
         notes.add(f"{name}{_SHORT}")
+    for sentence in frame.stats["unread"]:
+        notes.add(sentence)
     for what in ("transparency", "finishes"):
         if why := dict(frame.stats["plan"].skipped).get(what):
             notes.add(why[0].upper() + why[1:])

@@ -131,6 +131,10 @@ def draw(engine: bpy.types.RenderEngine, context: bpy.types.Context, depsgraph: 
             engine.tag_redraw()
         else:
             state.redraw_when_at_rest(engine)
+    unread = [each for each in state.refinement.renderer.streamed.unread if each not in last_notes]
+    last_notes.extend(unread)
+    if unread:
+        _say(engine, state)
     if state.is_waiting or state.arrival.is_compiling or state.says:
         _say(engine, state)
         state.redraw_when_more_is_there(engine)

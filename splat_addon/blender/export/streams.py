@@ -37,7 +37,7 @@ class Streams:
             if key not in self._open:
                 self._open[key] = Stream(path, key[-1])
         except (OSError, ValueError) as error:
-            why = f"{path}: {error.strerror}." if isinstance(error, OSError) else str(error)
+            why = f"{path}: {error.strerror or error}." if isinstance(error, OSError) else str(error)
             raise ValueError(
                 f"{owner.name} is drawn with its coarsest surfels only, because its file cannot be read. {why}"
             ) from None

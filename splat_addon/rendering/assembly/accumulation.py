@@ -101,11 +101,11 @@ def moment_places(samples: int, moments: int) -> list[float]:
 
 def mean_frame(frames: Iterable[Frame]) -> Frame:
     """The mean frame: arrays that are means are averaged; depth, position and indices come from the nearest sample;
-    times are added up; other statistics come from the last frame.
+    times are added up; what could not be read is that of all; other statistics come from the last frame.
 
     Only one sum and one frame are held at a time, in float32: after a thousand frames rounding is about 1e-6.
     """
-    count, sums, nearest, matte, milliseconds, passes, stats = 0, {}, {}, None, 0.0, {}, {}
+    count, sums, nearest, matte, milliseconds, passes, unread, stats = 0, {}, {}, None, 0.0, {}, {}, {}
     for frame in frames:
         for name in _MEANS:
             if (values := getattr(frame, name)) is not None:
@@ -117,8 +117,9 @@ def mean_frame(frames: Iterable[Frame]) -> Frame:
         milliseconds += frame.stats["milliseconds"]
         for name, elapsed in frame.stats["passes"].items():
             passes[name] = passes.get(name, 0.0) + elapsed
+        unread |= dict.fromkeys(frame.stats.get("unread", ()))
         count, stats = count + 1, frame.stats
-    stats = {**stats, "milliseconds": milliseconds, "passes": passes, "samples": count}
+    stats = {**stats, "milliseconds": milliseconds, "passes": passes, "unread": tuple(unread), "samples": count}
     means = {name: total / np.float32(count) for name, total in sums.items()}
     arrays = means | nearest | {"cryptomatte": matte and matte.over(count)}
     return Frame(**{name: arrays.get(name) for name in OUTPUTS}, stats=stats)

@@ -10,12 +10,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from concurrent.futures import Future, wait
 from dataclasses import replace
+from functools import partial
 from time import perf_counter
 
 import numpy as np
 
 from ...hierarchy import Sight
-from ...streaming import Stream
+from ...streaming import Stream, Unreadable
 from ...streaming.stream import Gathered, Seen
 from ..assembly.panorama_faces import DENSITY
 from ..scene import Instance, Scene
@@ -36,12 +37,13 @@ class Streamed:
     """The streamed instances of the scenes that one renderer draws.
 
     is_waiting: whether a finer set than the last view drew is on its way. short: names of instances that the memory
-    sufficed to draw coarser only.
+    sufficed to draw coarser only. unread: sentences on instances that are coarser because files cannot be read.
     """
 
     def __init__(self):
         self.is_waiting = False
         self.short: tuple[str, ...] = ()
+        self.unread: tuple[str, ...] = ()
         self._from: Scene | None = None
         self._scene: Scene | None = None
         self._made: dict[Instance, tuple[Gathered, tuple[Instance, ...]]] = {}
@@ -62,10 +64,9 @@ class Streamed:
         seconds: time to wait. Reading and choosing go on in other threads then, and until they are done the sets of
         earlier views are drawn, which cover everything too, or the coarsest ones. None: wait for everything. told:
         called between reads; it may raise. most: surfels that all sets together may have when there is no time to wait
-        for everything. needs_whole: the sets of earlier views stay until all that this one needs is read. Raises
-        OSError if a file cannot be read.
+        for everything. needs_whole: the sets of earlier views stay until all that this one needs is read.
         """
-        self.is_waiting, self.short = False, ()
+        self.is_waiting, self.short, self.unread = False, (), ()
         streams = {instance.stream: 0 for instance in scene.surfels if instance.stream is not None}
         if not streams:
             self._coming.clear()
@@ -74,42 +75,52 @@ class Streamed:
             for stream in streams:
                 stream.begin_frame()
         share = most and most // sum(instance.stream is not None for instance in scene.surfels)
-        until, made, short = perf_counter() + (seconds or 0.0), {}, {}
+        until, made, short, unread = perf_counter() + (seconds or 0.0), {}, {}, {}
         shadows = settings.shadow_resolution > 0 and any(light.casts_shadow for light in scene.lights)
         for instance in scene.surfels:
             if (stream := instance.stream) is None or instance.is_flattened:
                 continue
             view, beside = _view(instance, camera, shadows, seconds is not None, settings.detail_tolerance)
             if seconds is None:
-                seen = stream.seen(view, beside, told)
+                seen, why = _seen(partial(stream.seen, view, beside, told))
             else:
                 # instances are made again with every change of the scene, but their order stays
                 streams[stream] += 1
                 coming = self._coming.setdefault((stream, streams[stream]), _Coming(stream))
                 seen = coming.latest(view, beside, max(until - perf_counter(), 0.0), share, needs_whole)
-                self.is_waiting |= coming.is_waiting
+                self.is_waiting, why = self.is_waiting | coming.is_waiting, coming.why
+            if why:
+                unread[f"{instance.name} is coarser than it should be. {why}"] = None
             short |= {instance.name: None} if seen.is_short else {}
             known = self._made.get(instance)
             is_known = known is not None and known[0] is seen.gathered
             made[instance] = known if is_known else (seen.gathered, _instances(instance, seen.gathered))
         self._coming = {key: own for key, own in self._coming.items() if key[1] <= streams.get(key[0], 0)}
         is_same = scene is self._from and all(made[i] is self._made.get(i) for i in made)
-        self._made, self.short = made, tuple(short)
+        self._made, self.short, self.unread = made, tuple(short), tuple(unread)
         if not is_same:
             parts = ((instance,) if instance not in made else made[instance][1] for instance in scene.surfels)
             self._from, self._scene = scene, replace(scene, surfels=tuple(part for some in parts for part in some))
         return self._scene
 
 
+def _seen(asked: Callable[[], Seen]) -> tuple[Seen, str]:
+    """What a view draws, and why it is coarser than it asked for, if its file cannot be read."""
+    try:
+        return asked(), ""
+    except Unreadable as error:
+        return error.seen, str(error)
+
+
 class _Coming:
     """The set of one instance in a view that does not wait: the last that was finished, while another thread prepares
     the next. Time to read doubles with each, so that sets that are soon replaced cost little.
 
-    is_waiting: whether a better set for the view is on its way.
+    is_waiting: whether a better set for the view is on its way. why: why the last set is coarser than it should be.
     """
 
     def __init__(self, stream: Stream):
-        self._stream = stream
+        self._stream, self.why = stream, ""
         self._key, self._seen = None, Seen(stream.roots, False, False)
         self._next: tuple[tuple, Future[Seen]] | None = None
         self._seconds = _READING
@@ -131,7 +142,7 @@ class _Coming:
         if self._next is not None:
             key, future = self._next
             if wait([future], seconds).done:
-                seen, self._key, self._next = future.result(), key, None
+                (seen, self.why), self._key, self._next = _seen(future.result), key, None
                 self._seen = self._seen._replace(is_whole=False) if seen.gathered is None else seen
 
 

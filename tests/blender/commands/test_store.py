@@ -9,20 +9,16 @@ import pytest
 
 from splat_addon.blender.geometry.world_surfels import world_surfels
 from splat_addon.interchange import write_ply
-from splat_addon.streaming import BlockFile, Stream, described
-from splat_addon.streaming.layout import as_surfels
+from splat_addon.streaming import Stream, described
 
 
 def every_surfel(path):
     """The surfels of a file, without merged ones."""
-    file = BlockFile(path)
-    first, last = file.blocks.first, file.blocks.last
-    rows = []
-    for number in np.flatnonzero(file.blocks.first_child == file.blocks.last_child):
-        some = np.empty(last[number] - first[number], file.kind)
-        file.read_into(some, int(first[number]))
-        rows.append(some)
-    return as_surfels(np.concatenate(rows), file.origin, file.is_solid)
+    stream = Stream(path, 0)
+    surfels = stream.at_most(10**9)
+    assert len(surfels) == len(stream)
+    stream.close()
+    return surfels
 
 
 def sorted_places(surfels):

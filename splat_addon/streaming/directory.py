@@ -1,0 +1,165 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Reads the directory of a file of blocks (`layout`), and holds every number of it against the file's real size."""
+
+from __future__ import annotations
+
+import json
+import zlib
+from dataclasses import dataclass
+from typing import BinaryIO
+
+import numpy as np
+
+from ..surfels import LAYOUT
+from .layout import COLUMNS, FIELDS, HEAD, MAGIC, PAGE, SUM, SUMS, UNCHECKED_VERSION, VERSION, row_type
+
+#: The longest directory that is read; a written one has some 1,500 bytes.
+_LONGEST = 1 << 20
+_LARGEST = float(np.finfo(np.float64).max)
+
+
+@dataclass(frozen=True, eq=False)
+class Directory:
+    """What a file says of itself, all of it possible.
+
+    surfels, rows, blocks, roots: their numbers. origin: (3,) float64. kind: type of a row. offsets: array -> where it
+    begins; all arrays end before the directory. sums: "row_sums" and "block_sums" -> the CRC-32 of the array; empty
+    for a file without checksums.
+    """
+
+    surfels: int
+    rows: int
+    blocks: int
+    roots: int
+    origin: np.ndarray
+    is_solid: bool
+    is_transparent: bool
+    kind: np.dtype
+    offsets: dict[str, int]
+    sums: dict[str, int]
+
+
+def read_directory(stream: BinaryIO, size: int, name: str) -> Directory:
+    """The directory of an open file. size: of the file, bytes. name: for messages.
+
+    Raises OSError if the file cannot be read, ValueError with a sentence if it has another format, another version, or
+    is cut off or damaged.
+    """
+    head = stream.read(HEAD.size)
+    if len(head) < HEAD.size or not head.startswith(MAGIC):
+        raise ValueError(f"{name} is not a file of surfels in blocks; store surfels in one first.")
+    _, version, checksum, offset, length = HEAD.unpack(head)
+    if version not in (UNCHECKED_VERSION, VERSION):
+        raise ValueError(
+            f"{name} has version {version} of the format, and this extension reads versions up to {VERSION}; store "
+            "its surfels again."
+        )
+    if offset + length != size:
+        raise ValueError(
+            f"{name} has {size:,} bytes where its head says {offset + length:,}: it is cut off or damaged; copy or "
+            "store it again."
+        )
+    if length > _LONGEST:
+        raise ValueError(f"{name} is damaged: its directory has {length:,} bytes; copy or store it again.")
+    stream.seek(offset)
+    text = stream.read(length)
+    if zlib.crc32(text) != checksum:
+        raise ValueError(f"{name} is damaged: the checksum of its directory is wrong; copy or store it again.")
+    try:
+        return _directory(json.loads(text), offset, version)
+    except _Wrong as error:
+        raise ValueError(f"{name} is damaged: {error}; copy or store it again.") from None
+    except (ValueError, RecursionError):
+        raise ValueError(f"{name} is damaged: its directory cannot be read; copy or store it again.") from None
+
+
+class _Wrong(Exception):
+    """What is wrong with a directory, as the middle of a sentence."""
+
+
+def _directory(values, end: int, version: int) -> Directory:
+    """A checked directory. end: where the arrays end, bytes. Raises `_Wrong`."""
+    values = _of_type(values, dict, "the directory")
+    arrays = _of_type(values.get("arrays"), dict, "arrays")
+    kind = _row_type(values.get("fields"))
+    rows = _count(_entry(arrays, "rows").get("count"), 1, end, "the number of rows")
+    shape = _of_type(_entry(arrays, "first").get("shape"), list, "the shape of first")
+    blocks = _count(shape[0] if shape else None, 1, end, "the number of blocks")
+    sizes = {"rows": rows * kind.itemsize}
+    for name, (columns, type_) in COLUMNS.items():
+        _check_type(arrays, name, type_, [blocks, columns] if columns > 1 else [blocks])
+        sizes[name] = blocks * columns * type_.itemsize
+    sums = {}
+    if version != UNCHECKED_VERSION:
+        for name, count in zip(SUMS, (rows, blocks), strict=True):
+            pages = -(-count // PAGE)
+            _check_type(arrays, name, SUM, [pages])
+            sizes[name] = pages * SUM.itemsize
+            sums[name] = _count(_entry(arrays, name).get("checksum"), 0, 0xFFFFFFFF, f"the checksum of {name}")
+    return Directory(
+        _count(values.get("surfels"), 1, rows, "the number of surfels"),
+        rows,
+        blocks,
+        _count(values.get("roots"), 1, blocks, "the number of roots"),
+        _origin(values.get("origin")),
+        _of_type(values.get("is_solid"), bool, "is_solid"),
+        # the first files had opaque surfels only, and did not say so
+        _of_type(values.get("is_transparent", False), bool, "is_transparent"),
+        kind,
+        {name: _offset(arrays, name, size, end) for name, size in sizes.items()},
+        sums,
+    )
+
+
+def _of_type(value, kind: type, what: str):
+    if type(value) is not kind:
+        raise _Wrong(f"{what} is {_short(value)} in its directory")
+    return value
+
+
+def _count(value, least: int, most: int, what: str) -> int:
+    if type(value) is not int or not least <= value <= most:
+        raise _Wrong(f"{what} is {_short(value)} in its directory")
+    return value
+
+
+def _short(value) -> str:
+    text = repr(value)
+    return text if len(text) <= 40 else f"{text[:40]}..."
+
+
+def _entry(arrays: dict, name: str) -> dict:
+    return _of_type(arrays.get(name), dict, f"the array {name}")
+
+
+def _check_type(arrays: dict, name: str, kind: np.dtype, shape: list[int]) -> None:
+    """Hold what the file says of an array against what it must be; nothing else of it is used."""
+    array = _entry(arrays, name)
+    for what, expected in (("type", kind.str), ("shape", shape)):
+        if array.get(what) != expected:
+            raise _Wrong(f"the {what} of {name} is {_short(array.get(what))} in its directory, not {expected!r}")
+
+
+def _offset(arrays: dict, name: str, size: int, end: int) -> int:
+    offset = _count(_entry(arrays, name).get("offset"), HEAD.size, end, f"the offset of {name}")
+    if offset + size > end:
+        raise _Wrong(f"its array {name} ends behind the file")
+    return offset
+
+
+def _row_type(fields) -> np.dtype:
+    fields = _of_type(fields, dict, "fields")
+    for name, columns in fields.items():
+        if name not in FIELDS or type(columns) is not int or columns != FIELDS[name][0]:
+            raise _Wrong(f"it has a field {_short(name)} with {_short(columns)} columns, which surfels lack")
+    if missing := LAYOUT.keys() - fields.keys():
+        raise _Wrong(f"it lacks the field {min(missing)}")
+    return row_type(fields)
+
+
+def _origin(origin) -> np.ndarray:
+    numbers = _of_type(origin, list, "the origin")
+    # a whole number may be too large for a float, which is as bad as infinite
+    if len(numbers) != 3 or not all(type(n) in (int, float) and -_LARGEST <= n <= _LARGEST for n in numbers):
+        raise _Wrong(f"the origin is {_short(numbers)} in its directory")
+    return np.array(numbers, np.float64)
