@@ -305,6 +305,14 @@ def are_usable(arrays: dict[str, np.ndarray]) -> np.ndarray:
     return np.logical_and.reduce(list(_row_checks(arrays).values()))
 
 
+def faults_of(**fields) -> dict[str, int]:
+    """What makes rows of the arguments of `valid_surfels` unusable -> the number of such rows."""
+    arrays = _shaped({name: fields[name] for name in (*LAYOUT, *OPTIONAL_LAYOUT) if name in fields})
+    arrays |= {name: _normalised(arrays[name]) for name in ("rotations", "normals")}
+    bad = {name: int(len(good) - np.count_nonzero(good)) for name, good in _row_checks(arrays).items()}
+    return {f"{name} that are not {_DEMANDS.get(name, 'finite')}": count for name, count in bad.items() if count}
+
+
 def concatenate(parts: list[Surfels]) -> Surfels:
     """One set from several that share an origin.
 

@@ -17,6 +17,7 @@ MAY_IMPORT = {
     "large_surfels": set(),
     "quaternions": set(),
     "surfels": {"clip_lines", "large_surfels", "quaternions"},
+    "doubts": {"surfels"},
     "images": set(),
     "sampling": {"array_files", "clip_lines", "large_surfels", "quaternions", "surfels", "images"},
     "hierarchy": {"clip_lines", "large_surfels", "quaternions", "surfels"},
@@ -30,10 +31,10 @@ MAY_IMPORT = {
         "hierarchy",
         "streaming",
     },
-    "interchange": {"clip_lines", "quaternions", "surfels"},
+    "interchange": {"clip_lines", "doubts", "quaternions", "surfels"},
     "streaming": {"clip_lines", "surfels", "hierarchy", "interchange"},
     "reference": {"clip_lines", "large_surfels", "quaternions", "surfels", "images", "rendering"},
-    "blender": {"surfels", "sampling", "rendering", "interchange", "streaming"},
+    "blender": {"doubts", "surfels", "sampling", "rendering", "interchange", "streaming"},
 }
 #: `reference` reads rendering's data, never its passes.
 RENDERING_DATA = {"scene", "shadows.maps", "settings", "frame", "view", "depth_range", "methods", "shading_models"}

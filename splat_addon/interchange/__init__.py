@@ -9,7 +9,7 @@ Reading: `ply_header`, then `ply_file` (vertices as named columns), then `conten
 from .contents import read_contents
 from .following import followed
 from .gaussian_ply import write_gaussian_ply
-from .gaussians import DEFAULT_FLATNESS, Gaussians, flat_gaussians
+from .gaussians import DEFAULT_FLATNESS, Gaussians, flat_gaussians, harmonic_colors
 from .placement import joined, transformed
 from .point_ply import Points
 from .surfel_ply import PlyPortions, StoredSurfels, read_ply, write_ply
@@ -22,6 +22,7 @@ __all__ = [
     "StoredSurfels",
     "flat_gaussians",
     "followed",
+    "harmonic_colors",
     "joined",
     "read_contents",
     "read_ply",

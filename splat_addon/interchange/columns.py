@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Converts file columns to the arrays of `Surfels` and back, including the two colour encodings that files use."""
+"""Converts file columns to the arrays of `Surfels` and back, including the colour encodings that files use."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -14,6 +16,36 @@ ROTATION = ("rot_0", "rot_1", "rot_2", "rot_3")
 #: Channel names of a colour, without and with alpha.
 _CHANNELS = (("red", "green", "blue"), ("r", "g", "b"), ("diffuse_red", "diffuse_green", "diffuse_blue"))
 _ALPHAS = ("alpha", "a")
+
+#: Floats of which more than a hundredth is above this are taken as numbers from 0 to 255 or 65535; a few may be light
+#: that is brighter than white.
+_BRIGHTEST, _FEW = 10.0, 0.01
+
+#: What float colours can mean.
+FLOAT_COLORS = ("DISPLAY", "LINEAR")
+
+#: Properties that say again what others say, so that nobody misses them.
+_REDUNDANT = {name for group in (*_CHANNELS, _ALPHAS) for name in group} | {"radius"}
+
+
+class Columns(dict):
+    """Columns by property name, which remember those that were read."""
+
+    def __init__(self, columns: dict[str, np.ndarray]):
+        super().__init__(columns)
+        self._read = set()
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        self._read.add(name)
+        return super().__getitem__(name)
+
+    def passed_over(self) -> list[str]:
+        """A sentence about the columns that nobody read, or nothing."""
+        names = [name for name in self if name not in self._read | _REDUNDANT]
+        if not names:
+            return []
+        shown = ", ".join(name[:40] for name in names[:8]) + (" ..." if len(names) > 8 else "")
+        return [f"Passed over {len(names):,} properties that surfels do not have: {shown}"]
 
 
 def has(columns: dict[str, np.ndarray], *groups: tuple[str, ...]) -> bool:
@@ -32,22 +64,40 @@ def as_columns(names: tuple[str, ...], values: np.ndarray) -> dict[str, np.ndarr
     return dict(zip(names, values.T, strict=True))
 
 
-def display_color(columns: dict[str, np.ndarray]) -> np.ndarray | None:
-    """(N, 4) float32 scene-linear colours from red, green, blue and optionally alpha; None if the columns are missing.
+def display_color(columns: dict[str, np.ndarray], floats: str = "DISPLAY") -> tuple[np.ndarray | None, list[str]]:
+    """(N, 4) float32 scene-linear colours from red, green, blue and optionally alpha, None if the columns are missing;
+    and a sentence about what was assumed, if that is not the rule.
 
-    Integers are sRGB display values, as every program writes them; floats are taken as scene-linear. White is 255 in
-    integers of any type, or what the largest value needs, up to the type's limit.
+    Colours are sRGB display values, as every program writes them and Blender reads them; floats are scene-linear if
+    floats is "LINEAR". White is 255 in integers of any type, or what the largest value needs, up to the type's limit.
+    In floats it is 1, or 255 or 65535 if there are many values above 10.
     """
     names = next((group for group in _CHANNELS if has(columns, group)), None)
     if names is None:
-        return None
+        return None, []
     channels = [columns[name] for name in names]
     alphas = [columns[name] for name in _ALPHAS if name in columns][:1]
-    values = [_fraction(column, channels + alphas) for column in channels]
-    values = [v if column.dtype.kind == "f" else srgb_to_linear(v) for v, column in zip(values, channels, strict=True)]
-    alpha = [_fraction(column, channels + alphas) for column in alphas] or [np.ones(len(values[0]))]
+    # the alpha of integers is on the scale of the colours, that of floats often is not
+    scale = [*channels, *(alpha for alpha in alphas if alpha.dtype.kind != "f")]
+    values = [_not_negative(column) / _white(column, scale) for column in channels]
+    values = [
+        v if floats == "LINEAR" and column.dtype.kind == "f" else srgb_to_linear(v)
+        for v, column in zip(values, channels, strict=True)
+    ]
+    alpha = fractions(alphas[0], channels) if alphas else np.ones(len(values[0]))
     with np.errstate(over="ignore"):
-        return np.column_stack(values + alpha).astype(np.float32)
+        return np.column_stack([*values, alpha]).astype(np.float32), _assumed(channels, scale, floats)
+
+
+def alpha_of(columns: dict[str, np.ndarray]) -> np.ndarray | None:
+    """(N,) float64 opacities of a column alpha; None if there is none."""
+    name = next((name for name in _ALPHAS if name in columns), None)
+    return None if name is None else fractions(columns[name])
+
+
+def fractions(column: np.ndarray, others: Sequence[np.ndarray] = ()) -> np.ndarray:
+    """(N,) float64, numbers as fractions of the largest that a file may mean. others: integers on the same scale."""
+    return _not_negative(column) / _white(column, [column, *(each for each in others if each.dtype.kind != "f")])
 
 
 def linear_to_srgb(linear: np.ndarray) -> np.ndarray:
@@ -57,21 +107,40 @@ def linear_to_srgb(linear: np.ndarray) -> np.ndarray:
 
 
 def srgb_to_linear(encoded: np.ndarray) -> np.ndarray:
-    """The inverse of `linear_to_srgb`."""
+    """The inverse of `linear_to_srgb`; what leaves float64's range becomes infinite."""
     size = np.abs(np.asarray(encoded, np.float64))
-    return np.copysign(np.where(size <= 0.04045, size / 12.92, ((size + 0.055) / 1.055) ** 2.4), encoded)
+    with np.errstate(over="ignore"):
+        return np.copysign(np.where(size <= 0.04045, size / 12.92, ((size + 0.055) / 1.055) ** 2.4), encoded)
 
 
-def _fraction(column: np.ndarray, colors: list[np.ndarray]) -> np.ndarray:
-    """A column of `colors`, integers as fractions of white, which is the same for all columns of their type."""
+def _white(column: np.ndarray, columns: list[np.ndarray]) -> np.float64:
+    """What stands for 1 in a column, which is the same for all of its type."""
+    values = [_not_negative(other) for other in columns if other.dtype == column.dtype]
     if column.dtype.kind == "f":
-        return column.astype(np.float64)
-    largest = max(_not_negative(other).max(initial=0) for other in colors if other.dtype == column.dtype)
-    values = _not_negative(column)
-    limit = np.iinfo(values.dtype).max
-    return values / np.float64(min(next((white for white in _WHITES if largest <= white), limit), limit))
+        finite = np.concatenate([other[np.isfinite(other)] for other in values])
+        if np.count_nonzero(finite > _BRIGHTEST) <= _FEW * len(finite):
+            return np.float64(1)
+        return np.float64(
+            next(w for w in _WHITES if np.count_nonzero(finite > w) <= _FEW * len(finite) or w == _WHITES[-1])
+        )
+    largest, limit = max(other.max(initial=0) for other in values), np.iinfo(values[0].dtype).max
+    return np.float64(min(next((white for white in _WHITES if largest <= white), limit), limit))
+
+
+def _assumed(channels: list[np.ndarray], scale: list[np.ndarray], floats: str) -> list[str]:
+    """What was assumed of colours that are not bytes."""
+    kinds, white = {column.dtype.kind for column in channels}, _white(channels[0], scale)
+    if "f" in kinds:
+        meaning = "scene-linear" if floats == "LINEAR" else "display values (sRGB)"
+        return [f"Took the float colours of {len(channels[0]):,} points as {meaning}, where white is {white:g}"]
+    bits = 8 * channels[0].dtype.itemsize
+    if bits == 8:
+        return []
+    return [f"Took {white:g} as white in the {bits}-bit colours of {len(channels[0]):,} points"]
 
 
 def _not_negative(column: np.ndarray) -> np.ndarray:
-    """Integers, negative ones as 0, but signed bytes as the unsigned ones that programs mean by them."""
+    """Floats as float64. Integers, negative ones as 0, but signed bytes as the unsigned ones that programs mean."""
+    if column.dtype.kind == "f":
+        return column.astype(np.float64)
     return column.view(np.uint8) if column.dtype == np.int8 else np.maximum(column, 0)

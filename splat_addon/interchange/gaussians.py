@@ -36,6 +36,7 @@ class Gaussians:
     not_flat: left out because they are too thick.
     unusable: left out because of invalid numbers.
     view_dependent: number of view-dependent colour properties, which surfels cannot represent.
+    said: sentences about how they were read.
     """
 
     surfels: Surfels
@@ -43,9 +44,10 @@ class Gaussians:
     not_flat: int
     unusable: int
     view_dependent: int
+    said: tuple[str, ...] = ()
 
     def notes(self) -> list[str]:
-        """A sentence about each kind of thing that was left out."""
+        """A sentence about each kind of thing that was left out or assumed."""
         skipped = {
             "thicker than the flatness allows": self.not_flat,
             "with unusable numbers": self.unusable,
@@ -53,26 +55,27 @@ class Gaussians:
         said = [f"Skipped {count:,} of {self.total:,} Gaussians {why}" for why, count in skipped.items() if count]
         if self.view_dependent:
             said.append("Skipped the part of the colours that changes with the view, which surfels do not have")
-        return said
+        return [*said, *self.said]
 
 
 def flat_gaussians(
     positions: np.ndarray,
     sigmas: np.ndarray,
     rotations: np.ndarray,
-    harmonics: np.ndarray,
+    colors: np.ndarray,
     opacities: np.ndarray,
     normals: np.ndarray | None = None,
     *,
     view_dependent: int = 0,
+    said: tuple[str, ...] = (),
     flatness: float = DEFAULT_FLATNESS,
 ) -> Gaussians:
     """Surfels from the Gaussians whose smallest sigma is at most `flatness` times the middle one.
 
     positions: (N, 3) float64. sigmas: (N, 3) float64 along the axes of the rotations, (N, 4) float32, w first.
-    harmonics: (N, 3) (display colour - 0.5) / `SH_DEGREE_0`. opacities: (N,) 0 to 1. normals: (N, 3) float32; where
-    they are missing or 0, the thin axis is the normal. Raises ValueError for a flatness that is not a number from 0
-    to 1.
+    colors: (N, 3) scene-linear. opacities: (N,) 0 to 1. normals: (N, 3) float32; where they are missing or 0, the thin
+    axis is the normal. view_dependent, said: for the result. Raises ValueError for a flatness that is not a number from
+    0 to 1.
     """
     if not (math.isfinite(flatness) and 0 <= flatness <= 1):
         raise ValueError(f"The flatness must be a number from 0 to 1, not {flatness}.")
@@ -91,7 +94,7 @@ def flat_gaussians(
             rotations=rotations,
             scales=(scales / SIGMA).astype(np.float32),
             normals=_normals(None if normals is None else normals[kept], rotations),
-            colors=_colors(harmonics[kept], opacities[kept]),
+            colors=np.column_stack([colors[kept], opacities[kept]]).astype(np.float32),
             materials=np.zeros(len(kept), np.int32),
             origin=origin,
         )
@@ -101,7 +104,14 @@ def flat_gaussians(
         not_flat=int(np.count_nonzero(usable & ~flat)),
         unusable=int(np.count_nonzero(~usable)) + lost,
         view_dependent=view_dependent,
+        said=said,
     )
+
+
+def harmonic_colors(harmonics: np.ndarray) -> np.ndarray:
+    """(N, 3) scene-linear colours from (N, 3) (display colour - 0.5) / `SH_DEGREE_0`; negative channels are clamped to
+    0, as renderers do."""
+    return srgb_to_linear(np.maximum(0.5 + SH_DEGREE_0 * harmonics, 0))
 
 
 def _flat_frames(rotations: np.ndarray, sigmas: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -135,13 +145,6 @@ def _normals(normals: np.ndarray | None, rotations: np.ndarray) -> np.ndarray:
     with np.errstate(invalid="ignore", divide="ignore"):
         flat = quaternion_axes(rotations / np.linalg.norm(rotations, axis=1, keepdims=True))[2]
     return flat if normals is None else np.where((normals != 0).any(axis=1)[:, None], normals, flat)
-
-
-def _colors(harmonics: np.ndarray, opacities: np.ndarray) -> np.ndarray:
-    """(n, 4) float32 scene-linear colours and opacities; negative channels are clamped to 0, as renderers do."""
-    shown = np.maximum(0.5 + SH_DEGREE_0 * harmonics, 0)
-    with np.errstate(over="ignore"):
-        return np.column_stack([srgb_to_linear(shown), opacities]).astype(np.float32)
 
 
 def _needs_origin(positions: np.ndarray) -> bool:

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from typing import BinaryIO
+from typing import BinaryIO, NamedTuple
 
 import numpy as np
 
@@ -26,8 +26,17 @@ _TYPE_NAMES = {code: name for name, code in reversed(TYPES.items())}
 _TEXT_FORMATS = {"f4": "%.9g", "f8": "%.17g"}
 
 
-def read_vertices(path: str | os.PathLike) -> tuple[dict[str, np.ndarray], tuple[str, ...]]:
-    """(N,) columns by property name, in the types declared in the header, and the header's comments.
+class Vertices(NamedTuple):
+    """columns: (N,) by property name, in the types declared in the header. comments: the header's.
+    others: rows of the elements that are not the points, by name, without empty ones."""
+
+    columns: dict[str, np.ndarray]
+    comments: tuple[str, ...]
+    others: dict[str, int]
+
+
+def read_vertices(path: str | os.PathLike) -> Vertices:
+    """The vertices of a PLY file.
 
     Raises ValueError with one sentence for a file that is not PLY or is damaged, OSError if it cannot be opened.
     """
@@ -40,9 +49,7 @@ def vertex_count(path: str | os.PathLike) -> int:
         return _vertices(read_header(stream)).count
 
 
-def vertex_portions(
-    path: str | os.PathLike, most: int | None = None
-) -> Iterator[tuple[dict[str, np.ndarray], tuple[str, ...]]]:
+def vertex_portions(path: str | os.PathLike, most: int | None = None) -> Iterator[Vertices]:
     """The vertices as in `read_vertices`, but at most `most` at a time; at least one portion, which may be empty. A
     text file is a single portion.
     """
@@ -55,11 +62,12 @@ def vertex_portions(
             raise ValueError(f"The property {name[:40]!r} of the PLY file's points is a list; only numbers can be.")
         if not vertex.types:
             raise ValueError("The points in the PLY file have no properties, not even a position.")
+        others = {each.name: each.count for each in header.elements if each is not vertex and each.count}
         if header.byte_order is None:
-            yield read_text(stream, size, header, vertex), header.comments
+            yield Vertices(read_text(stream, size, header, vertex), header.comments, others)
         else:
             for columns in _read_binary(stream, size, header, vertex, most):
-                yield columns, header.comments
+                yield Vertices(columns, header.comments, others)
 
 
 def _vertices(header: Header) -> Element:

@@ -7,13 +7,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .columns import NORMAL, POSITION, display_color, has, matrix
+from .columns import NORMAL, POSITION, has, matrix
+from .gaussian_ply import color_and_opacity, lacks_of_gaussians
+
+#: A property of SuperSplat's compressed files.
+_PACKED = "packed_position"
 
 
 @dataclass(frozen=True, eq=False)
 class Points:
     """positions: (N, 3) float64.
     normals: (N, 3), radii: (N,), colors: (N, 4) scene-linear; None if the file lacks them.
+    said: sentences about how they were read.
 
     The values are not checked here; `sampling.surfels_from_points` does that.
     """
@@ -22,16 +27,32 @@ class Points:
     normals: np.ndarray | None
     radii: np.ndarray | None
     colors: np.ndarray | None
+    said: tuple[str, ...] = ()
 
 
-def points(columns: dict[str, np.ndarray]) -> Points:
-    """The points in columns of a PLY file. Raises ValueError where x, y or z is missing."""
+def points(columns: dict[str, np.ndarray], floats: str = "DISPLAY") -> Points:
+    """The points in columns of a PLY file. floats: as in `display_color`. Raises ValueError where x, y or z is
+    missing."""
+    if _PACKED in columns:
+        raise ValueError(
+            "The PLY file is compressed (SuperSplat's packed properties), which cannot be read; export an uncompressed "
+            "PLY from SuperSplat."
+        )
     missing = [name for name in POSITION if name not in columns]
     if missing:
-        raise ValueError(f"The points in the PLY file have no {' and no '.join(missing)}.")
+        there = " ".join(list(columns)[:12])
+        raise ValueError(f"The points in the PLY file have no {' and no '.join(missing)}, but: {there[:120]}.")
+    colors, opacities, said = color_and_opacity(columns, floats)
+    if colors is None and opacities is not None:
+        said = [*said, f"Passed over the opacity of {len(opacities):,} points, because they have no colour"]
+    elif colors is not None:
+        opacities = np.ones(len(colors)) if opacities is None else opacities
+        with np.errstate(over="ignore"):
+            colors = np.column_stack([colors, opacities]).astype(np.float32)
     return Points(
         positions=matrix(columns, POSITION, np.float64),
         normals=matrix(columns, NORMAL) if has(columns, NORMAL) else None,
         radii=columns["radius"].astype(np.float64) if "radius" in columns else None,
-        colors=display_color(columns),
+        colors=colors,
+        said=(*said, *lacks_of_gaussians(columns)),
     )

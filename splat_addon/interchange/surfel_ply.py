@@ -21,11 +21,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from ..surfels import LAYOUT, OPTIONAL_LAYOUT, Surfels, valid_surfels
+from ..doubts import clear_count, doubts_of_transparency
+from ..surfels import LAYOUT, OPTIONAL_LAYOUT, Surfels, faults_of, valid_surfels
 from .columns import NORMAL, POSITION, ROTATION, as_columns, display_color, has, linear_to_srgb, matrix
 from .ply_file import read_vertices, vertex_count, vertex_portions, write_vertices
 
@@ -45,10 +46,22 @@ _OPTIONAL = {
 
 @dataclass(frozen=True, eq=False)
 class StoredSurfels:
-    """Surfels read from a file, and the number of unusable rows."""
+    """Surfels read from a file.
+
+    faults: why a row is unusable -> number of rows; a row may have several. unusable: number of such rows.
+    said: sentences about how they were read.
+    """
 
     surfels: Surfels
     unusable: int
+    faults: dict[str, int] = field(default_factory=dict)
+    said: tuple[str, ...] = ()
+
+    def notes(self) -> list[str]:
+        """A sentence about what was left out, and others about what was assumed."""
+        why = ", ".join(f"{count:,} with {fault}" for fault, count in self.faults.items())
+        skipped = f"Skipped {self.unusable:,} unusable surfels: {why}"
+        return [*[skipped] * bool(self.unusable), *self.said]
 
 
 def write_ply(path: str | os.PathLike, surfels: Surfels, ascii: bool = False) -> None:
@@ -82,10 +95,10 @@ def read_ply(path: str | os.PathLike) -> Surfels:
 
     Raises ValueError with one sentence for a damaged file, another layout, or rows that are not surfels.
     """
-    columns, comments = read_vertices(path)
+    columns, comments, _ = read_vertices(path)
     if not is_surfels(columns):
         raise ValueError(_NO_SURFELS)
-    return Surfels(**_fields(columns, comments))
+    return Surfels(**_fields(columns, comments)[0])
 
 
 class PlyPortions:
@@ -96,19 +109,30 @@ class PlyPortions:
 
     def __init__(self, path: str | os.PathLike, most: int = 1 << 20):
         self._path, self._most = path, most
-        self.unusable = 0
+        self._forget()
+
+    def _forget(self) -> None:
+        self.unusable = self._clear = self._count = 0
+        self._said: dict[str, None] = {}
+
+    def notes(self) -> list[str]:
+        """A sentence about each thing that the last iteration left out, assumed or found doubtful."""
+        skipped = [f"Skipped {self.unusable:,} unusable surfels"] * bool(self.unusable)
+        return [*skipped, *self._said, *doubts_of_transparency(self._clear, self._count)]
 
     def __len__(self) -> int:
         """The number of rows that the file says it has."""
         return vertex_count(self._path)
 
     def __iter__(self) -> Iterator[Surfels]:
-        self.unusable = 0
-        for columns, comments in vertex_portions(self._path, self._most):
+        self._forget()
+        for columns, comments, _ in vertex_portions(self._path, self._most):
             if not is_surfels(columns):
                 raise ValueError(_NO_SURFELS)
             part = stored_surfels(columns, comments)
             self.unusable += part.unusable
+            self._said |= dict.fromkeys(part.said)
+            self._clear, self._count = self._clear + clear_count(part.surfels), self._count + len(part.surfels)
             yield part.surfels
 
 
@@ -118,31 +142,38 @@ def is_surfels(columns: dict[str, np.ndarray]) -> bool:
     return has(columns, POSITION, NORMAL, ROTATION, _SCALE) and not has(columns, ("opacity",))
 
 
-def stored_surfels(columns: dict[str, np.ndarray], comments: tuple[str, ...]) -> StoredSurfels:
-    """The usable rows. Raises ValueError if a comment is damaged."""
-    return StoredSurfels(*valid_surfels(**_fields(columns, comments)))
+def stored_surfels(columns: dict[str, np.ndarray], comments: tuple[str, ...], floats: str = "DISPLAY") -> StoredSurfels:
+    """The usable rows. floats: as in `display_color`. Raises ValueError if a comment is damaged."""
+    fields, said = _fields(columns, comments, floats)
+    surfels, unusable = valid_surfels(**fields)
+    return StoredSurfels(surfels, unusable, faults_of(**fields) if unusable else {}, tuple(said))
 
 
-def _fields(columns: dict[str, np.ndarray], comments: tuple[str, ...]) -> dict:
+def _fields(columns: dict[str, np.ndarray], comments: tuple[str, ...], floats: str = "DISPLAY") -> tuple[dict, list]:
+    """The arguments of `valid_surfels`, and what was assumed."""
     origin = _origin(comments)
     positions = matrix(columns, POSITION, np.float64)
     # Infinite values stay infinite or become NaN, and are counted as unusable.
     with np.errstate(over="ignore", invalid="ignore"):
         positions = (positions - origin).astype(np.float32)
-    colors = matrix(columns, _COLOR) if has(columns, _COLOR) else display_color(columns)
-    material = columns.get("material", np.zeros(len(positions))).astype(np.float64)
+    colors, said = (matrix(columns, _COLOR), []) if has(columns, _COLOR) else display_color(columns, floats)
+    if colors is None:
+        colors = np.tile(np.float32(_WHITE), (len(positions), 1))
+        said = [f"Took white as the colour of {len(positions):,} surfels, which have none"]
+    material = columns["material"].astype(np.float64) if "material" in columns else np.zeros(len(positions))
     optional = {name: matrix(columns, group) for name, group in _OPTIONAL.items() if has(columns, group)}
-    return {
+    fields = {
         "positions": positions,
         "rotations": matrix(columns, ROTATION),
         "scales": matrix(columns, _SCALE),
         "normals": matrix(columns, NORMAL),
-        "colors": np.tile(np.float32(_WHITE), (len(positions), 1)) if colors is None else colors,
+        "colors": colors,
         "materials": np.clip(np.nan_to_num(material), -1, 2**31 - 1).astype(LAYOUT["materials"][1]),
         "origin": origin,
         "is_solid": _SOLID in comments,
         **{name: values if len(_OPTIONAL[name]) > 1 else values[:, 0] for name, values in optional.items()},
     }
+    return fields, said
 
 
 def _origin(comments: tuple[str, ...]) -> np.ndarray:

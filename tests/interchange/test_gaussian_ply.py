@@ -91,6 +91,82 @@ def test_numbers_that_cannot_be_are_counted(gaussian_file):
     assert (read.total, len(read.surfels), read.unusable, read.not_flat) == (6, 1, 5, 0)
 
 
+SH, RGB = 0.28209479177387814, [f"f_dc_{k}" for k in range(3)]
+WHOLE = {
+    "x": 1,
+    "scale_0": np.log(0.4),
+    "scale_1": np.log(0.1),
+    "scale_2": -9,
+    "opacity": -1,
+    "rot_0": 0.8,
+    "rot_1": 0.6,
+}
+WHOLE |= {f"f_dc_{k}": (v / 255 - 0.5) / SH for k, v in enumerate((200, 60, 0))}
+
+#: other forms of the same Gaussian: property -> value, and what is not there
+FORMS = {
+    "rgb": ({"red": 200, "green": 60, "blue": 0}, RGB),
+    "diffuse": ({"diffuse_red": 200, "diffuse_green": 60, "diffuse_blue": 0}, RGB),
+    "float rgb": ({"r": 200 / 255, "g": 60 / 255, "b": 0}, RGB),
+    "rgba": ({"red": 200, "green": 60, "blue": 0, "alpha": 255 / (1 + np.e)}, [*RGB, "opacity"]),
+    "alpha beside f_dc": ({"alpha": 1 / (1 + np.e)}, ["opacity"]),
+    "letters": (
+        {f"scale_{n}": WHOLE[f"scale_{k}"] for k, n in enumerate("xyz")} | {"rot_w": 0.8, "rot_x": 0.6},
+        [*(f"scale_{k}" for k in range(3)), *(f"rot_{k}" for k in range(4))],
+    ),
+    "no normals": ({}, ["nx", "ny", "nz"]),
+}
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_other_programs_forms_of_a_gaussian_are_the_same_surfel(gaussian_file, form):
+    values, missing = FORMS[form]
+    letters = ["rot_y", "rot_z"] if form == "letters" else []
+    whole = read_contents(gaussian_file([WHOLE])).surfels
+    read = read_contents(gaussian_file([WHOLE | values], leave_out=missing, extra=[*values, *letters])).surfels
+    for name, array in whole.arrays().items():
+        assert np.allclose(getattr(read, name), array, atol=2e-6), name
+    assert np.allclose(read.scales, (0.8, 0.2)) and np.allclose(read.colors[0, 3], 1 / (1 + np.e))
+
+
+@pytest.mark.parametrize(
+    ("missing", "sentence"),
+    [
+        (RGB, "Took white as the colour of 1 Gaussians, which have none"),
+        (["opacity"], "Took 1 Gaussians as opaque, because they have no opacity"),
+        ([f"rot_{k}" for k in range(4)], "Took the Gaussians as bare points, because they have no rot_0 rot_1"),
+        (["scale_0"], "Took the Gaussians as bare points, because they have no scale_0"),
+    ],
+)
+def test_what_gaussians_lack_is_said(gaussian_file, missing, sentence):
+    said = read_contents(gaussian_file([WHOLE], leave_out=missing)).said
+    assert any(each.startswith(sentence) for each in said)
+
+
+def test_bare_points_keep_the_colours_and_opacities_of_gaussians(gaussian_file):
+    read = read_contents(gaussian_file([WHOLE], leave_out=["rot_0"]))
+    assert np.allclose(read.colors, [(0.57758, 0.04519, 0, 1 / (1 + np.e))], atol=1e-5)
+
+
+def test_the_filter_of_mip_splatting_widens_gaussians_and_makes_them_fainter(gaussian_file):
+    row = WHOLE | {"scale_0": np.log(0.3), "scale_1": np.log(0.4), "filter_3D": 0.4}
+    surfels = read_contents(gaussian_file([row], extra=["filter_3D"]), 1.0).surfels
+    assert np.allclose(np.sort(surfels.scales), np.sort(2 * np.sqrt([0.4**2 + 0.3**2, 0.4**2 + 0.4**2])))
+    lost = (0.3 / 0.5) * (0.4 / np.sqrt(0.32)) * (np.exp(-9) / np.hypot(np.exp(-9), 0.4))
+    assert np.allclose(surfels.colors[0, 3], lost / (1 + np.e), rtol=1e-4)
+
+
+def test_sizes_that_seem_to_be_no_logarithms_are_doubted(gaussian_file):
+    rows = [WHOLE | {f"scale_{k}": v for k, v in enumerate((0.02, 0.01, 0.001))} | {"x": x} for x in (1, 2)]
+    assert read_contents(gaussian_file(rows)).said[0].startswith("Took scale_0 scale_1 scale_2 of 2 Gaussians as log")
+    assert not read_contents(gaussian_file([WHOLE, WHOLE])).said
+
+
+def test_neural_gaussians_are_told_apart(gaussian_file):
+    with pytest.raises(ValueError, match="neural Gaussians"):
+        read_contents(gaussian_file([WHOLE], extra=["f_anchor_feat_0"]))
+
+
 def test_view_dependent_colour_is_reported(gaussian_file):
     path = gaussian_file([{"scale_2": -9}], extra=[f"f_rest_{k}" for k in range(45)])
     assert read_contents(path).view_dependent == 45

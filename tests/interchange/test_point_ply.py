@@ -33,9 +33,56 @@ def test_what_is_not_in_the_file_is_none(ply):
     assert points.normals is points.radii is points.colors is None
 
 
-def test_float_colours_are_scene_linear(ply):
-    head = ["format ascii 1.0", "element vertex 1", *(f"property float {n}" for n in "xyzrgba")]
-    assert np.allclose(read_contents(ply(head, b"0 0 0 0.25 2 0 0.5\n")).colors, (0.25, 2, 0, 0.5))
+COLORED = ["format ascii 1.0", "element vertex 2", *(f"property float {n}" for n in "xyz")]
+
+
+def floats_of(ply, rows, kind="float", **options):
+    return read_contents(ply([*COLORED, *(f"property {kind} {n}" for n in "rgba")], rows), **options)
+
+
+@pytest.mark.parametrize("kind", ["float", "double"])
+@pytest.mark.parametrize("white", [1, 255, 65535])
+def test_float_colours_are_display_values_from_0_to_their_white(ply, kind, white):
+    """As Blender's own import takes them, where white is 1; what was assumed is said."""
+    rows = f"0 0 0 {0.5 * white} {0.25 * white} {white} 0.5\n0 0 0 0 0 0 1\n".encode()
+    read = floats_of(ply, rows, kind)
+    assert np.allclose(read.colors, [(0.21404114, 0.0508761, 1, 0.5), (0, 0, 0, 1)])
+    assert read.said == (f"Took the float colours of 2 points as display values (sRGB), where white is {white:g}",)
+
+
+def test_float_colours_are_scene_linear_if_the_caller_says_so(ply):
+    read = floats_of(ply, b"0 0 0 0.25 2 0 0.5\n0 0 0 0 0 0 1\n", float_colors="LINEAR")
+    assert np.allclose(read.colors[0], (0.25, 2, 0, 0.5)) and "scene-linear, where white is 1" in read.said[0]
+    with pytest.raises(ValueError, match="DISPLAY, LINEAR, not 'SRGB'"):
+        floats_of(ply, b"", float_colors="SRGB")
+
+
+def test_a_few_bright_values_do_not_darken_all_others(ply):
+    head = ["format ascii 1.0", "element vertex 100", *(f"property float {n}" for n in "xyzrgb")]
+    read = read_contents(ply(head, b"0 0 0 1 1 1\n" * 99 + b"0 0 0 50 1 1\n"))
+    assert np.allclose(read.colors[0], 1)
+
+
+def test_the_white_of_long_integers_is_said(ply):
+    head = [*COLORED, *(f"property ushort {n}" for n in ("red", "green", "blue"))]
+    read = read_contents(ply(head, b"0 0 0 65535 0 0\n0 0 0 1 2 3\n"))
+    assert read.said == ("Took 65535 as white in the 16-bit colours of 2 points",)
+
+
+def test_what_is_passed_over_or_left_out_is_said_with_its_number(ply):
+    head = [*COLORED, "property uchar red", "property float quality", "property int flags", "element face 1"]
+    read = read_contents(ply([*head, "property list uchar int i"], b"0 0 0 1 2 3\n0 0 1 1 2 3\n3 0 1 1\n"))
+    assert read.said == (
+        "Passed over 2 properties that surfels do not have: quality, flags",
+        "Left out what is not points: 1 'face'; to convert faces, import them as a mesh",
+    )
+
+
+def test_supersplats_compressed_layout_is_named(ply):
+    names = ("position", "rotation", "scale", "color")
+    head = ["format binary_little_endian 1.0", "element vertex 1", *(f"property uint packed_{n}" for n in names)]
+    with pytest.raises(ValueError, match=r"is compressed .*export an uncompressed PLY"):
+        read_contents(ply(head, bytes(16)))
 
 
 @pytest.mark.parametrize("kind", ["uchar", "ushort", "short", "uint", "int"])

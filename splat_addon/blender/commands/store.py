@@ -51,8 +51,8 @@ def run(options: argparse.Namespace) -> Iterator[Path]:
         expected = sum(map(len, parts))
     with unfinished(out) as folder:
         count = write_blocks(folder / out.name, parts, _printed(), expected=expected)
-    skipped = parts.unusable if options.ply else 0
-    print(f"{count:,} surfels" + (f", {skipped:,} unusable ones skipped" if skipped else ""), flush=True)
+    for note in (f"{count:,} surfels", *(parts.notes() if options.ply else ())):
+        print(note, flush=True)
     yield out
 
 

@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterator
 import bpy
 from mathutils import Matrix, Vector
 
+from ...doubts import doubts
 from ...sampling import Sampling, SamplingCancelled, sample_surface
 from .as_rendered import as_rendered
 from .following import at_origin_of_source
@@ -148,6 +149,7 @@ class ConversionBatch(Batch):
                     bake(conversion, depsgraph)
             except ValueError as error:
                 conversion.notes.append(f"Nothing was baked: {error}")
+        conversion.notes += doubts(conversion.surfels)
         super()._finish(conversion, context)
 
     def _place(self, conversion: Conversion, context) -> bpy.types.Object:

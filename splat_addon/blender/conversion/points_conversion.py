@@ -13,6 +13,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
+from ...doubts import doubts
 from ...interchange import DEFAULT_FLATNESS, Gaussians, transformed
 from ...sampling import PointsReport, surfels_from_points
 from ...surfels import Surfels
@@ -20,6 +21,7 @@ from ..geometry.gaussian_clouds import is_gaussian_cloud, read_gaussians
 from ..geometry.points_extraction import ExtractedPoints, extract_points, materials_of, sheared
 from .batch import Batch
 from .placement import without_shear
+from .points_settings import is_mild
 from .surfel_objects import active_collection, add_surfel_object, collections_of, render_like
 
 
@@ -58,11 +60,11 @@ class PointsConversion(_OfOneObject):
 
     @property
     def notes(self) -> list[str]:
-        return list(self.report.notes())
+        return [*self.report.notes(), *doubts(self.surfels)]
 
     def is_warning(self, note: str) -> bool:
         """Whether anything was left out or is doubtful."""
-        return not note.startswith("Estimated")
+        return not is_mild(note)
 
     def summary(self) -> str:
         """A one-line summary of what was made."""
@@ -96,7 +98,7 @@ class GaussiansConversion(_OfOneObject):
 
     @property
     def notes(self) -> list[str]:
-        return self.gaussians.notes()
+        return [*self.gaussians.notes(), *doubts(self.surfels)]
 
     def is_warning(self, note: str) -> bool:
         return True

@@ -102,6 +102,11 @@ def viewpoint(properties: PointsProperties, context: bpy.types.Context) -> Vecto
     return None
 
 
+def is_mild(note: str) -> bool:
+    """Whether a note tells how points were completed or read, and not what was left out or is doubtful."""
+    return note.startswith(("Estimated", "Took", "Passed over"))
+
+
 def draw_points_properties(layout: bpy.types.UILayout, properties: PointsProperties) -> None:
     """Draw the settings of bare points in Blender's own style."""
     layout.use_property_split = True

@@ -16,7 +16,7 @@ from __future__ import annotations
 import bpy
 import numpy as np
 
-from ...interchange import Gaussians, flat_gaussians
+from ...interchange import Gaussians, flat_gaussians, harmonic_colors
 from .reading import read_values
 
 _RADIANCE = "radiance:base"
@@ -46,7 +46,7 @@ def read_gaussians(cloud: bpy.types.PointCloud, flatness: float) -> Gaussians:
         positions.astype(np.float64),
         sigmas.astype(np.float64),
         rotations,
-        radiance[:, :3].astype(np.float64),
+        harmonic_colors(radiance[:, :3].astype(np.float64)),
         radiance[:, 3].astype(np.float64),
         view_dependent=sum(attribute.name.startswith(_HARMONICS) for attribute in cloud.attributes),
         flatness=flatness,

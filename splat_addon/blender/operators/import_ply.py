@@ -6,10 +6,11 @@ from __future__ import annotations
 from pathlib import Path
 
 import bpy
-from bpy.props import BoolProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper, poll_file_object_drop
 from mathutils import Matrix
 
+from ...doubts import doubts
 from ...interchange import Gaussians, PlyPortions, Points, StoredSurfels, read_contents
 from ...sampling import surfels_from_points
 from ...streaming.layout import SUFFIX
@@ -18,6 +19,7 @@ from ..conversion.points_settings import (
     PointsProperties,
     draw_gaussian_properties,
     draw_points_properties,
+    is_mild,
     keywords,
     viewpoint,
 )
@@ -49,6 +51,16 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ModalWriting, ImportHelper, 
         default=False,
     )
 
+    float_colors: EnumProperty(
+        name="Float Colors",
+        description="What the file's colours mean if they are floats and the file does not say it",
+        items=(
+            ("DISPLAY", "Display", "Display values (sRGB), as in Blender's own PLY import"),
+            ("LINEAR", "Linear", "Scene-linear values"),
+        ),
+        default="DISPLAY",
+    )
+
     def invoke(self, context, event):
         self._is_asked = True
         if not self.filepath:
@@ -59,7 +71,8 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ModalWriting, ImportHelper, 
     def draw(self, context):
         self.layout.use_property_split = True
         self.layout.use_property_decorate = False
-        self.layout.prop(self, "keeps_in_file")
+        for name in ("keeps_in_file", "float_colors"):
+            self.layout.prop(self, name)
         header, body = self.layout.panel("surfels_ply_gaussians")
         header.label(text="Gaussian Splats")
         if body:
@@ -83,17 +96,18 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ModalWriting, ImportHelper, 
             if self._name.endswith(SUFFIX):
                 self._open(context, absolute(self.filepath))
                 return {"FINISHED"}
-            contents = read_contents(absolute(self.filepath), self.flatness)
+            contents = read_contents(absolute(self.filepath), self.flatness, self.float_colors)
             surfels, notes = _READERS[type(contents)](contents, self, context)
             if not len(surfels):
                 raise ValueError(f"The file gives no surfels{': ' if notes else ''}{'; '.join(notes)}.")
+            notes += doubts(surfels)
         except (ValueError, OSError, MemoryError) as error:
             return self._fail(error)
         made = add_surfel_object(Path(self._name).stem, surfels, Matrix(), [active_collection(context)])
         select_only(context, [made])
         self.report({"INFO"}, said("{name}: {count:,} surfels", name=self._name, count=len(surfels)))
         for note in notes:
-            self.report({"INFO" if note.startswith("Estimated") else "WARNING"}, note)
+            self.report({"INFO" if is_mild(note) else "WARNING"}, note)
         return {"FINISHED"}
 
     def _begin(self, context):
@@ -101,8 +115,8 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ModalWriting, ImportHelper, 
 
     def _finish(self, context, keeping):
         self._open(context, keeping.path)
-        if keeping.unusable:
-            self.report({"WARNING"}, said("Skipped {count:,} unusable surfels", count=keeping.unusable))
+        for note in keeping.notes():
+            self.report({"INFO" if is_mild(note) else "WARNING"}, note)
 
     def _open(self, context, path: str):
         """Add an object whose surfels are in a file of blocks. Raises OSError or ValueError."""
@@ -127,14 +141,13 @@ class Keeping(Writing):
         parts = PlyPortions(source)
         super().__init__(path, parts, len(parts))
 
-    @property
-    def unusable(self) -> int:
-        """Number of rows that were no surfels."""
-        return self._parts.unusable
+    def notes(self) -> list[str]:
+        """A sentence about each thing that was left out, assumed or found doubtful."""
+        return self._parts.notes()
 
 
 def _from_surfels(contents: StoredSurfels, properties, context) -> tuple[Surfels, list[str]]:
-    return contents.surfels, [f"Skipped {contents.unusable:,} unusable surfels"] * bool(contents.unusable)
+    return contents.surfels, contents.notes()
 
 
 def _from_gaussians(contents: Gaussians, properties, context) -> tuple[Surfels, list[str]]:
@@ -151,7 +164,7 @@ def _from_points(contents: Points, properties, context) -> tuple[Surfels, list[s
         viewpoint=None if eye is None else tuple(eye),
         **keywords(properties),
     )
-    return surfels, list(report.notes())
+    return surfels, [*report.notes(), *contents.said]
 
 
 #: What a file can contain -> function of it, the operator and the context that returns surfels and notes.

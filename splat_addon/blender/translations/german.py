@@ -882,6 +882,14 @@ GERMAN = {
         "Höchstens so viele Megabyte Speicher darf ein endgültiger Render und jede 3D-Ansicht für die Surfels jeder "
         "Datei benutzen, aus der sie gelesen werden. Teile eines Bildes, die mehr brauchen, werden gröber gezeichnet"
     ),
+    "Float Colors": "Fließkommafarben",
+    "What the file's colours mean if they are floats and the file does not say it": (
+        "Was die Farben der Datei bedeuten, wenn sie Fließkommazahlen sind und die Datei es nicht sagt"
+    ),
+    "Display": "Anzeige",
+    "Display values (sRGB), as in Blender's own PLY import": "Anzeigewerte (sRGB) wie in Blenders eigenem PLY-Import",
+    "Linear": "Linear",
+    "Scene-linear values": "Szenenlineare Werte",
     "Keep in a File": "In einer Datei behalten",
     (
         "Store the surfels in a file beside the .blend, from which every view reads only what it needs, instead of in "

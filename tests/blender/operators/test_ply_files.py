@@ -104,12 +104,23 @@ def test_bare_points_become_surfels(import_ply, surfels_of, tmp_path):
     assert len(surfels) == 500 and ((surfels.normals * points).sum(axis=1) > 0.8).all()
 
 
-def test_float_colours_far_above_white_are_a_warning(import_ply, tmp_path, capfd):
+def test_float_colours_are_those_of_blenders_own_import(import_ply, surfels_of, tmp_path, capfd):
     names = "x y z nx ny nz radius red green blue"
     head = ["ply", "format ascii 1.0", "element vertex 1", *(f"property float {n}" for n in names.split())]
-    (tmp_path / "c.ply").write_text("\n".join([*head, "end_header", "0 0 0 0 0 1 1 200 10 10", ""]))
+    (tmp_path / "c.ply").write_text("\n".join([*head, "end_header", "0 0 0 0 0 1 1 0.5 0.25 1", ""]))
+    color = surfels_of(import_ply(tmp_path / "c.ply")).colors[0]
+    assert "Info: Took the float colours of 1 points as display values" in capfd.readouterr().out
+    bpy.ops.wm.ply_import(filepath=str(tmp_path / "c.ply"))
+    assert np.allclose(color, bpy.context.object.data.color_attributes[0].data[0].color)
+    assert np.allclose(surfels_of(import_ply(tmp_path / "c.ply", float_colors="LINEAR")).colors[0], (0.5, 0.25, 1, 1))
+
+
+def test_an_invisible_scan_is_a_warning(import_ply, tmp_path, capfd):
+    names = "x y z nx ny nz radius red green blue alpha"
+    head = ["ply", "format ascii 1.0", "element vertex 1", *(f"property float {n}" for n in names.split())]
+    (tmp_path / "c.ply").write_text("\n".join([*head, "end_header", "0 0 0 0 0 1 1 1 1 1 0", ""]))
     import_ply(tmp_path / "c.ply")
-    assert "Warning: Kept the colours of 1 points that exceed 10" in capfd.readouterr().out
+    assert "Warning: 1 of 1 surfels are fully transparent" in capfd.readouterr().out
 
 
 def test_thick_gaussians_are_counted_and_left_out(import_ply, surfels_of, tmp_path, capfd):
