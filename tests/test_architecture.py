@@ -18,6 +18,7 @@ MAY_IMPORT = {
     "quaternions": set(),
     "surfels": {"clip_lines", "large_surfels", "quaternions"},
     "doubts": {"surfels"},
+    "primaries": {"surfels"},
     "images": set(),
     "sampling": {"array_files", "clip_lines", "large_surfels", "quaternions", "surfels", "images"},
     "hierarchy": {"clip_lines", "large_surfels", "quaternions", "surfels"},
@@ -32,9 +33,9 @@ MAY_IMPORT = {
         "streaming",
     },
     "interchange": {"clip_lines", "doubts", "quaternions", "surfels"},
-    "streaming": {"clip_lines", "surfels", "hierarchy", "interchange"},
+    "streaming": {"clip_lines", "surfels", "primaries", "hierarchy", "interchange"},
     "reference": {"clip_lines", "large_surfels", "quaternions", "surfels", "images", "rendering"},
-    "blender": {"doubts", "surfels", "sampling", "rendering", "interchange", "streaming"},
+    "blender": {"doubts", "surfels", "primaries", "sampling", "rendering", "interchange", "streaming"},
 }
 #: `reference` reads rendering's data, never its passes.
 RENDERING_DATA = {"scene", "shadows.maps", "settings", "frame", "view", "depth_range", "methods", "shading_models"}

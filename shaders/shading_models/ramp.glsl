@@ -5,8 +5,6 @@
 
 #include "hosts/world_light.glsl"
 
-const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722);  // ITU-R BT.709
-
 vec3 ramp_at(float luminance) {
   int last = textureSize(color_ramp, 0).x - 1;
   float at = clamp(luminance, 0.0, 1.0) * float(last);
@@ -18,7 +16,7 @@ vec3 ramp_at(float luminance) {
 vec3 shade(vec3 position, vec3 normal, vec3 base, vec3 material) {
   vec3 light = world_irradiance(normal);
   #hook lit(light, position, normal)
-  return base * ramp_at(dot(light, LUMINANCE));
+  return base * ramp_at(dot(light, frame.ramp_luminance.rgb));
 }
 
 #part lights

@@ -34,6 +34,10 @@ POINTS_PANEL = "VIEW3D_PT_surfels_from_points"
 #: Nodes drop it, which is right: what they make may be open.
 SOLID = "surfels_solid"
 
+#: Custom property of a surfel mesh: the 9 numbers of `working_space.to_xyz` when its colours were written. When the
+#: working space changes, Blender converts no colour attributes of floats.
+PRIMARIES = "surfels_primaries"
+
 #: The node group that deforms surfels with their source.
 SHAPE_GROUP = "Follow Shape"
 

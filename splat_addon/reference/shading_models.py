@@ -74,7 +74,7 @@ def _ramp(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, setting
     for one in incident:
         light = light + one.irradiance * np.maximum(dot(surface.normal, one.to_light), 0)[:, None] / np.pi
     colors = settings.ramp.colors.astype(np.float64)
-    places, luminance = np.linspace(0, 1, len(colors)), light @ LUMINANCE
+    places, luminance = np.linspace(0, 1, len(colors)), light @ settings.ramp.luminance
     looked_up = np.stack([np.interp(luminance, places, channel) for channel in colors.T], axis=1)
     return surface.emission + surface.color * looked_up
 
@@ -136,9 +136,6 @@ def _lighting(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, set
     position = origin + surface.depth[:, None] * direction
     return direction, all_incident(scene, camera, position, surface.light_set, settings.epsilon)
 
-
-#: Weights of linear rgb (ITU-R BT.709).
-LUMINANCE = np.array((0.2126, 0.7152, 0.0722))
 
 #: The models that show how splats add up; they treat everything as opaque.
 DIAGNOSTIC = ("overdraw", "weight")

@@ -18,6 +18,7 @@ import numpy as np
 
 from ..hierarchy import Sight
 from ..hierarchy.ordering import spatial_order
+from ..primaries import recolored
 from ..surfels import Surfels, are_usable, portions, prepared
 from .block_file import BlockFile
 from .descent import descend
@@ -72,13 +73,14 @@ class Unreadable(OSError):
 
 class Stream:
     """One reader of a file. most_bytes: the memory that rows of the file may take, besides those that views hold.
-    roots: the surfels of the roots, which are always there.
+    roots: the surfels of the roots, which are always there. primaries: (3, 3), applied to the colours that views get.
 
     Raises OSError or ValueError as `BlockFile`.
     """
 
-    def __init__(self, path: str | os.PathLike, most_bytes: int):
+    def __init__(self, path: str | os.PathLike, most_bytes: int, primaries: np.ndarray | None = None):
         self.file = BlockFile(path)
+        self._primaries = np.eye(3) if primaries is None else primaries
         self.rows_read = 0
         self._kept: dict[tuple, tuple[int, Seen]] = {}
         self._same: WeakValueDictionary[bytes, Gathered] = WeakValueDictionary()
@@ -218,6 +220,7 @@ class Stream:
                 is_bad = np.logical_or.reduceat(~are_usable(fields), np.cumsum(last - first) - (last - first))
                 self.pages.lose(first[is_bad], last[is_bad])
                 raise _Unusable from None
+            surfels = recolored(surfels, self._primaries)
             finest, others = (portions(surfels, PART, run) for run in (range(own), range(own, len(surfels))))
             parts = prepared(finest + others)
             if self.file.is_transparent:

@@ -210,11 +210,6 @@ def missing_file(nodes, image):
     nodes.link(nodes.texture(texture), "Color", nodes.principled, "Base Color")
 
 
-def unknown_encoding(nodes, image):
-    texture = image(space="Filmic sRGB")
-    nodes.link(nodes.texture(texture), "Color", nodes.principled, "Base Color")
-
-
 def missing_uv_map(nodes, image):
     texture = nodes.texture(image())
     nodes.link(texture, "Color", nodes.principled, "Base Color")
@@ -253,7 +248,6 @@ def long_chain(nodes, image):
         (procedural, "Noise Texture node"),
         (without_image, "without an image"),
         (missing_file, "'gone', which has no pixels"),
-        (unknown_encoding, "colour space 'Filmic sRGB'"),
         (missing_uv_map, "UV map 'nowhere'"),
         (missing_attribute, "attribute 'nowhere'"),
     ],

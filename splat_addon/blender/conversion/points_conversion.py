@@ -19,6 +19,7 @@ from ...sampling import PointsReport, surfels_from_points
 from ...surfels import Surfels
 from ..geometry.gaussian_clouds import is_gaussian_cloud, read_gaussians
 from ..geometry.points_extraction import ExtractedPoints, extract_points, materials_of, sheared
+from ..working_space import surfels_from_rec709
 from .batch import Batch
 from .placement import without_shear
 from .points_settings import is_mild
@@ -150,7 +151,7 @@ class PointsBatch(Batch):
                 f"None of its {gaussians.total:,} Gaussians gives a surfel at a flatness of {self._flatness:g}: "
                 f"{'; '.join(gaussians.notes()) or 'it is empty'}."
             )
-        surfels = gaussians.surfels
+        surfels = surfels_from_rec709(gaussians.surfels)
         if shear is not None:
             affine = np.eye(4)
             affine[:3, :3] = shear

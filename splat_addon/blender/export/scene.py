@@ -13,6 +13,7 @@ from typing import NamedTuple
 import bpy
 import numpy as np
 
+from ...primaries import recolored
 from ...rendering import Instance, Light, Scene
 from ...rendering.detail.levels import replaced
 from ...streaming import Stream
@@ -20,11 +21,20 @@ from ...surfels import Surfels
 from ..conversion.placement import finite_matrix
 from ..conversion.shape_following import not_bent
 from ..conversion.source_record import is_stood_in, sources_in
-from ..geometry.attributes import Points, has_surfels, has_surfels_beside_faces, have_same_values, read_stored
+from ..geometry.attributes import (
+    Points,
+    has_surfels,
+    has_surfels_beside_faces,
+    have_same_values,
+    read_stored,
+    since_written,
+)
+from ..geometry.derived import Derived
 from ..geometry.gaussian_clouds import is_gaussian_cloud
 from ..geometry.points_proxy import is_solid, shown_points, shows_as_points
 from ..geometry.sources import asked_of, may_change, owner_of
-from ..materials.material_override import Overridden, override_of
+from ..ids import POINT_ATTRIBUTES
+from ..materials.material_override import overridden, override_of
 from ..materials.surface_textures import TextureStore
 from ..mesh_sampling_settings import Form, are_meshes_texture_mapped, density_of_meshes, form_of
 from . import passed_over
@@ -87,7 +97,7 @@ class SurfelStore:
     def __init__(self):
         self.world = WorldStore()
         self.textures = TextureStore()
-        self.overridden = Overridden()
+        self.derived = Derived()
         self.streams = Streams()
         self._kept: dict[int, Kept] = {}
         self._current: set[int] = set()
@@ -119,7 +129,7 @@ class SurfelStore:
             world's.
         """
         self.world.begin_frame(is_sky_edited)
-        self.overridden.begin_frame()
+        self.derived.begin_frame()
         self.streams.begin_frame()
         self.textures.begin_frame(are_materials_edited, is_told=changed is not None)
         self._current = {k for k in self._current if changed is not None and self._kept[k].name not in changed}
@@ -150,6 +160,11 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
                 notes.leave_out(entry.object.name, error)
     for sentence in sorted(filter(None, (not_bent(each, depsgraph) for each in things.made))):
         notes.add(sentence)
+    if older := sorted(each.name for each in things.made if not np.array_equal(since_written(each.data), np.eye(3))):
+        notes.add(
+            "Colours of surfels are of another working space than the file's; this engine converts them, other engines "
+            f"do not: convert {older[0]}{f' and {len(older) - 1:,} more' if older[1:] else ''} again"
+        )
     sampled, polygons = live_meshes.instances(
         depsgraph, density_of_meshes(bpy_scene), are_meshes_texture_mapped(bpy_scene), notes
     )
@@ -318,8 +333,14 @@ def _instances(
     Raises ValueError for broken attributes or an unusable matrix.
     """
     surfels, skipped, strayed = kept
+    # a point cloud made by modifiers has no slots of its own
+    slots = [slot.material for slot in object_.original.evaluated_get(depsgraph).material_slots]
     if surfels is None:
+        if POINT_ATTRIBUTES["uvs"].name in object_.original.data.attributes:
+            for material in slots:  # now, because images of some colour spaces cannot be read while a view is drawn
+                store.textures.get(material, notes)
         return []
+    surfels = _in_working_space(surfels, object_.original, store)
     if skipped:
         notes.add(f"{object_.name}: {skipped:,} surfels with unusable values are left out")
     if strayed:
@@ -331,14 +352,20 @@ def _instances(
         notes.add(sentence)
     if override is not None:
         materials = (shading_material(override, notes),)
-        painted = store.overridden.get(surfels, override, notes)
+        painted = overridden(surfels, override, store.derived, notes)
         return with_holes(Instance(painted, matrix_world, materials, **fields), held_slots([override]))
     own = surfels.arrays().keys()
-    # a point cloud made by modifiers has no slots of its own
-    slots = [slot.material for slot in object_.original.evaluated_get(depsgraph).material_slots]
     materials = tuple(shading_material(material, notes, own) for material in slots)
     textures = tuple(store.textures.get(material, notes) for material in slots) if surfels.has_uvs else ()
     return with_holes(Instance(surfels, matrix_world, materials, textures=textures, **fields), held_slots(slots))
+
+
+def _in_working_space(surfels: Surfels, owner: bpy.types.Object, store: SurfelStore) -> Surfels:
+    """The surfels of an object with their colours in the file's working space."""
+    matrix = since_written(owner.data)
+    if np.array_equal(matrix, np.eye(3)):
+        return surfels
+    return store.derived.get(surfels, tuple(matrix.ravel().tolist()), lambda: recolored(surfels, matrix))
 
 
 def _stream_of(owner: bpy.types.Object, store: SurfelStore, notes: Notes) -> Stream | None:

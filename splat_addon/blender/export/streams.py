@@ -11,6 +11,7 @@ from ...streaming import Stream
 from ..geometry.points_proxy import is_points_modifier
 from ..geometry.surfel_files import file_of
 from ..preferences import stream_bytes
+from ..working_space import from_rec709
 
 
 class Streams:
@@ -33,9 +34,10 @@ class Streams:
             return None
         try:
             status = os.stat(path)
-            key = path, status.st_mtime_ns, status.st_size, stream_bytes()
+            most, primaries = stream_bytes(), from_rec709()
+            key = path, status.st_mtime_ns, status.st_size, most, primaries.tobytes()
             if key not in self._open:
-                self._open[key] = Stream(path, key[-1])
+                self._open[key] = Stream(path, most, primaries)
         except (OSError, ValueError) as error:
             why = f"{path}: {error.strerror or error}." if isinstance(error, OSError) else str(error)
             raise ValueError(

@@ -18,7 +18,8 @@ import numpy as np
 
 from ...interchange import followed
 from ...surfels import LAYOUT, OPTIONAL_LAYOUT, Surfels, valid_surfels
-from ..ids import POINT_ATTRIBUTES, REST, SOLID, PointAttribute
+from .. import working_space
+from ..ids import POINT_ATTRIBUTES, PRIMARIES, REST, SOLID, PointAttribute
 from .gaussian_clouds import is_gaussian_cloud
 from .reading import read_values
 
@@ -28,6 +29,9 @@ Points = bpy.types.Mesh | bpy.types.PointCloud
 #: An attribute with either name on a mesh without faces marks the points as surfels.
 MARKS = tuple(POINT_ATTRIBUTES[field].name for field in ("rotations", "scales"))
 
+
+#: How far the matrices of one working space differ between versions of Blender; those of two differ by tenths.
+_SAME_SPACE = 1e-3
 
 #: The attributes that are not floats.
 _TYPES = {"INT": np.int32, "INT16_2D": np.int16}
@@ -73,7 +77,18 @@ def fill(mesh: bpy.types.Mesh, surfels: Surfels) -> None:
         mesh[SOLID] = True
     else:
         mesh.pop(SOLID, None)
+    mesh[PRIMARIES] = working_space.to_xyz().ravel().tolist()
     mesh.update()
+
+
+def since_written(mesh: Points) -> np.ndarray:
+    """(3, 3) conversion of a surfel mesh's colours from the working space in which they were written to the file's; the
+    identity if it is the same, or unknown."""
+    then, now = np.ravel(mesh.get(PRIMARIES, ())), working_space.to_xyz()
+    is_known = then.shape == (9,) and np.issubdtype(then.dtype, np.number) and np.isfinite(then).all()
+    if not is_known or np.allclose(then, now.ravel(), rtol=0, atol=_SAME_SPACE):
+        return np.eye(3)
+    return np.linalg.solve(now, then.reshape(3, 3))
 
 
 def _write(mesh: bpy.types.Mesh, layout: PointAttribute, values: np.ndarray) -> None:

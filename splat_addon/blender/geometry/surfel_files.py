@@ -14,6 +14,7 @@ from bpy.props import StringProperty
 from ...streaming import Stream
 from ..ids import MESH_SETTINGS
 from ..registration import with_property
+from ..working_space import surfels_from_rec709
 from .attributes import fill
 
 #: Surfels that a mesh keeps.
@@ -34,7 +35,7 @@ def keep_coarsest(mesh: bpy.types.Mesh, path: str, relative: str) -> tuple[int, 
     """
     stream = Stream(path, 0)
     try:
-        fill(mesh, stream.at_most(KEPT))
+        fill(mesh, surfels_from_rec709(stream.at_most(KEPT)))
         getattr(mesh, MESH_SETTINGS).file = relative
         return len(stream), stream.file.origin
     finally:

@@ -14,6 +14,7 @@ import numpy as np
 
 from ...sampling import Channel, Image, NormalMap, Surface, Texture, VertexColors
 from ...sampling.attributes.surfaces import ALPHA, RED
+from .. import working_space
 from ..geometry.attributes import has_surfels_beside_faces
 from .mean_surfaces import mean_of
 from .node_products import AttributeSource, ImageSource, Product, linked, outer, product
@@ -88,7 +89,8 @@ class MeshLayers:
         # Blender's Cubic and Smart equal Linear where a texture is not magnified.
         interpolation = "Closest" if node.interpolation == "Closest" else "Linear"
         is_apart = not keep_alpha and any(not link.is_muted for link in node.outputs["Alpha"].links)
-        key = node.image.session_uid, keep_alpha, node.extension, interpolation, is_apart
+        space = working_space.to_xyz().tobytes()
+        key = node.image.session_uid, keep_alpha, node.extension, interpolation, is_apart, space
         if key not in self._images:
             self._images[key] = Image(linear_pixels(node.image, keep_alpha, is_apart), node.extension, interpolation)
         return _mapped(self._images[key], source) if source.functions else self._images[key]

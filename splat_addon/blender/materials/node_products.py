@@ -13,7 +13,8 @@ from dataclasses import dataclass, replace
 import bpy
 import numpy as np
 
-from ...sampling.attributes.surfaces import ALPHA, BLUE, GREEN, LUMINANCE, RED
+from ...sampling.attributes.surfaces import ALPHA, BLUE, GREEN, RED
+from ..working_space import luminance
 from . import function_nodes
 from .node_trees import called
 from .texture_images import UnreadableError
@@ -157,7 +158,7 @@ class _Reading:
             return constant(socket)
         key = (*source, *self._groups)
         read = self._read[key] if key in self._read else self._output(source, key)
-        return read.weighted(LUMINANCE) if socket.type == "VALUE" else read
+        return read.weighted(luminance()) if socket.type == "VALUE" else read
 
     def _output(self, source: tuple[Node, str], key: tuple) -> Product:
         node, output = source
@@ -283,6 +284,10 @@ def _component(weights: tuple[float, ...]) -> Reader:
     return component
 
 
+def _luminance(node: Node, read: Read) -> Product:
+    return read(node.inputs[0]).weighted(luminance())
+
+
 def _mix(node: Node, read: Read) -> Product:
     factor, a, b = (_input(node, name) for name in _MIX_INPUTS[node.bl_idname])
     is_product = getattr(node, "data_type", "RGBA") == "RGBA" and node.blend_type == "MULTIPLY"
@@ -319,7 +324,7 @@ _READERS: dict[tuple[str, str], Reader] = {
     ("ShaderNodeSeparateRGB", "R"): _component(RED),
     ("ShaderNodeSeparateRGB", "G"): _component(GREEN),
     ("ShaderNodeSeparateRGB", "B"): _component(BLUE),
-    ("ShaderNodeRGBToBW", "Val"): _component(LUMINANCE),
+    ("ShaderNodeRGBToBW", "Val"): _luminance,
     ("ShaderNodeMix", "Result_Color"): _mix,
     ("ShaderNodeMixRGB", "Color"): _mix,
     **function_nodes.READERS,

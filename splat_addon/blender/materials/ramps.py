@@ -10,6 +10,7 @@ import bpy
 import numpy as np
 
 from ...rendering import Ramp, Settings
+from ..working_space import luminance
 
 #: Places at which it is read; more than a curve in the interface has pixels.
 PLACES = 256
@@ -28,9 +29,9 @@ def ramp_of(texture: bpy.types.Texture | None) -> Ramp:
     Until the colours change it is the same object, so that a view can refine.
     """
     global _kept
-    if texture is None or not texture.use_color_ramp:
-        return Settings.ramp
-    colors = table(texture.color_ramp)[:, :3].clip(0)
-    if not np.array_equal(_kept.colors, colors):
-        _kept = Ramp(colors)
+    has_ramp = texture is not None and texture.use_color_ramp
+    colors = table(texture.color_ramp)[:, :3].clip(0) if has_ramp else Settings.ramp.colors
+    weights = luminance()[:3]
+    if weights != _kept.luminance or not np.array_equal(_kept.colors, colors):
+        _kept = Ramp(colors, weights)
     return _kept

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import bpy
 
-from ...sampling.attributes.surfaces import LUMINANCE
+from ..working_space import luminance
 from .node_products import MAX_CHAIN, Product, constant, linked, outer, passed_through_link, product, within
 from .node_trees import uses_nodes
 from .texture_images import UnreadableError
@@ -70,7 +70,7 @@ class Shader:
         """The value of an input without what is linked to it."""
         read = constant(self.socket(name))
         number = self.node.inputs[name].type == "VALUE"
-        return read.weighted(LUMINANCE) if number else Product(read.value * (3 // len(read.value)))
+        return read.weighted(luminance()) if number else Product(read.value * (3 // len(read.value)))
 
     @property
     def is_clear(self) -> bool:

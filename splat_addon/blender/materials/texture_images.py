@@ -8,10 +8,14 @@ premultiplied. Sampling needs linear pixels with straight alpha, or opaque pixel
 from __future__ import annotations
 
 import zlib
+from collections.abc import Iterator
 from itertools import product
 
 import bpy
 import numpy as np
+
+from ...primaries import converted
+from .. import working_space
 
 
 class UnreadableError(Exception):
@@ -19,14 +23,14 @@ class UnreadableError(Exception):
 
 
 def linear_pixels(image: bpy.types.Image, keep_alpha: bool, is_apart: bool = False) -> np.ndarray:
-    """(h, w, 4) float32, scene-linear in Rec. 709, not premultiplied, row 0 at the bottom.
+    """(h, w, 4) float32, linear in the file's working space, not premultiplied, row 0 at the bottom.
 
     keep_alpha: whether the material uses the image's alpha; otherwise the result is opaque and, as in Cycles and
     EEVEE, its colour premultiplied, unless the image's own alpha mode says that they are not related, or its colours
     are data. In mode None an image has no alpha to keep.
     is_apart: whether something else uses the alpha that is not kept. Then Cycles divides the interpolated colour by it,
     so the colour continues beyond the rim of what is covered.
-    Raises UnreadableError for an image without pixels, a tiled or moving one, or an encoding other than sRGB.
+    Raises UnreadableError for an image without pixels, a tiled or moving one, or a colour space that is not there.
     """
     if image.source not in ("FILE", "GENERATED"):
         raise UnreadableError(f"the {image.source.lower()} image {image.name!r}")
@@ -50,7 +54,8 @@ def linear_pixels(image: bpy.types.Image, keep_alpha: bool, is_apart: bool = Fal
 def settings_of(image: bpy.types.Image) -> tuple:
     """What the result of `linear_pixels` depends on besides the stored pixels, and what usually changes with those."""
     path = image.source, image.filepath, tuple(image.size), image.is_dirty
-    return image.session_uid, *path, image.colorspace_settings.name, image.alpha_mode
+    space = image.colorspace_settings.name, working_space.to_xyz().tobytes()
+    return image.session_uid, *path, *space, image.alpha_mode
 
 
 def fingerprint(image: bpy.types.Image) -> int:
@@ -85,8 +90,8 @@ _DATA = ("Non-Color", "Raw")
 
 _ALPHA_IS_UNRELATED = ("CHANNEL_PACKED", "NONE")
 
-#: Colour spaces of 8-bit images whose values are linear in Rec. 709 as they are.
-_LINEAR = ("Non-Color", "Linear Rec.709", "Raw", "scene_linear")
+#: Colour spaces of 8-bit images whose values are used as they are.
+_AS_THEY_ARE = (*_DATA, "scene_linear")
 
 
 def srgb_to_linear(encoded: np.ndarray) -> np.ndarray:
@@ -122,16 +127,54 @@ _CHUNK = 1 << 14
 
 
 def _decode(pixels: np.ndarray, image: bpy.types.Image) -> None:
-    """Make the colours linear in place: 8-bit values through a table of their 256 possible results."""
-    space = image.colorspace_settings.name
-    if space in _LINEAR:
+    """Convert the colours to the working space, in place."""
+    space, rows = image.colorspace_settings.name, pixels.reshape(-1, 4)
+    if space in _AS_THEY_ARE:
         return
-    if space != "sRGB":
-        raise UnreadableError(f"the image {image.name!r} in the colour space {space!r}")
+    if space == "sRGB":
+        _decode_srgb(rows)
+    elif space != "Linear Rec.709":
+        _decode_by_blender(rows, image)
+        return
+    matrix = working_space.from_rec709()
+    for chunk in _chunks(rows):
+        chunk[...] = converted(chunk, matrix)
+
+
+def _chunks(rows: np.ndarray) -> Iterator[np.ndarray]:
+    return (rows[start : start + _CHUNK] for start in range(0, len(rows), _CHUNK))
+
+
+def _decode_srgb(rows: np.ndarray) -> None:
+    """Make 8-bit sRGB values linear in place, through a table of their 256 possible results."""
     table = srgb_to_linear(np.arange(256) / 255).astype(np.float32)
-    rows = pixels.reshape(-1, 4)
-    for chunk in (rows[start : start + _CHUNK] for start in range(0, len(rows), _CHUNK)):
+    for chunk in _chunks(rows):
         # Alpha goes along, since three columns of four are slower than all, and comes back.
         alpha = chunk[:, 3].copy()
         np.take(table, (chunk * 255 + 0.5).astype(np.uint8), out=chunk, mode="clip")
         chunk[:, 3] = alpha
+
+
+def _decode_by_blender(rows: np.ndarray, image: bpy.types.Image) -> None:
+    """Convert 8-bit values of any colour space in place: Blender does it when it loads a float image.
+
+    Each value that occurs is a pixel of such an image, packed as data and loaded again as colours.
+    """
+    space, name = image.colorspace_settings.name, f"{image.name} in the working space"
+    codes = (rows[:, :3] * 255 + 0.5).astype(np.uint32) @ np.array((1 << 16, 1 << 8, 1), np.uint32)
+    codes, places = np.unique(codes, return_inverse=True)
+    side = int(np.ceil(np.sqrt(len(codes))))
+    values = np.ones((side * side, 4), np.float32)
+    for channel, shift in enumerate((16, 8, 0)):
+        values[: len(codes), channel] = (codes >> shift & 255) / np.float32(255)
+    probe = bpy.data.images.new(name, side, side, alpha=True, float_buffer=True, is_data=True)
+    try:
+        probe.pixels.foreach_set(values.ravel())
+        probe.pack()
+        probe.colorspace_settings.name = space
+        if not probe.is_float or len(probe.pixels) != values.size:
+            raise UnreadableError(f"the image {image.name!r} in the colour space {space!r}")
+        probe.pixels.foreach_get(values.ravel())
+    finally:
+        bpy.data.images.remove(probe)
+    rows[:, :3] = values[places, :3]

@@ -27,6 +27,7 @@ from ..conversion.surfel_objects import active_collection, add_object_of, add_su
 from ..geometry.surfel_files import keep_coarsest, relative_path
 from ..ids import IMPORT_PLY
 from ..spoken import said
+from ..working_space import surfels_from_rec709
 from .file_paths import absolute, file_sentence, path_property
 from .menu_entry import with_menu_entry
 from .modal_writing import ModalWriting, Writing
@@ -98,6 +99,7 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ModalWriting, ImportHelper, 
                 return {"FINISHED"}
             contents = read_contents(absolute(self.filepath), self.flatness, self.float_colors)
             surfels, notes = _READERS[type(contents)](contents, self, context)
+            surfels = surfels_from_rec709(surfels)
             if not len(surfels):
                 raise ValueError(f"The file gives no surfels{': ' if notes else ''}{'; '.join(notes)}.")
             notes += doubts(surfels)

@@ -11,6 +11,7 @@ from ...surfels import portions
 from ..geometry.attributes import read_surfels
 from ..geometry.sources import is_surfel_object
 from ..geometry.surfel_files import file_of, keep_coarsest, relative_path
+from ..geometry.world_surfels import as_in_files
 from ..ids import STORE_SURFELS
 from ..spoken import said
 from .file_paths import absolute, path_property
@@ -29,7 +30,7 @@ class Storing(Writing):
         path = absolute(filepath or f"//{bpy.path.clean_name(owner.name)}{SUFFIX}")
         self._owner = owner
         surfels, self.unusable = read_surfels(owner.data)
-        super().__init__(path, portions(surfels, PORTION), len(surfels))
+        super().__init__(path, portions(as_in_files(surfels, owner), PORTION), len(surfels))
 
     def finish(self) -> int:
         """Leave the coarsest surfels in the object; returns how many the file holds."""

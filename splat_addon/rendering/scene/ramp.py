@@ -9,14 +9,20 @@ import numpy as np
 
 from .texels import opaque_texels
 
+#: Weights of linear Rec. 709 (ITU-R BT.709).
+LUMINANCE = (0.2126, 0.7152, 0.0722)
+
 
 @dataclass(frozen=True, eq=False)
 class Ramp:
-    """colors: (n, 3) linear rgb at n >= 2 even steps from no light to full light, in between linear. Compared by
-    identity.
+    """colors: (n, 3) linear rgb at n >= 2 even steps from no light to full light, in between linear.
+    luminance: weights of linear red, green and blue that make the amount of light.
+
+    Compared by identity.
     """
 
     colors: np.ndarray
+    luminance: tuple[float, float, float] = LUMINANCE
 
     def __post_init__(self):
         colors = np.ascontiguousarray(self.colors, np.float32)

@@ -11,5 +11,6 @@ MODEL = ShadingModel(
     is_lit=True,
     has_material=True,
     has_world=True,
+    values={"ramp_luminance": ("vec4", lambda tile: (*tile.settings.ramp.luminance, 0))},
     tables={"color_ramp": lambda tile: tile.resources.kept(tile.settings.ramp, tile.settings.ramp.texels)},
 )

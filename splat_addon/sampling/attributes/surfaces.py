@@ -13,8 +13,6 @@ import numpy as np
 
 from ...images import Image
 
-#: Weights that turn a colour into a single number: Rec. 709 luminance.
-LUMINANCE = (0.2126, 0.7152, 0.0722, 0.0)
 RED, GREEN, BLUE, ALPHA = ((*np.eye(4)[k].tolist(),) for k in range(4))
 
 
