@@ -12,7 +12,9 @@ FILES = sorted(PACKAGE.rglob("*.py"))
 
 #: layer -> the layers that it may import
 MAY_IMPORT = {
-    "array_files": set(),
+    "claims": set(),
+    "whole_files": {"claims"},
+    "array_files": {"whole_files"},
     "clip_lines": set(),
     "large_surfels": set(),
     "quaternions": set(),
@@ -32,10 +34,21 @@ MAY_IMPORT = {
         "hierarchy",
         "streaming",
     },
-    "interchange": {"clip_lines", "doubts", "quaternions", "surfels"},
-    "streaming": {"clip_lines", "surfels", "primaries", "hierarchy", "interchange"},
-    "reference": {"clip_lines", "large_surfels", "quaternions", "surfels", "images", "rendering"},
-    "blender": {"doubts", "surfels", "primaries", "sampling", "rendering", "interchange", "streaming"},
+    "interchange": {"clip_lines", "doubts", "quaternions", "surfels", "whole_files"},
+    "streaming": {"clip_lines", "surfels", "primaries", "hierarchy", "interchange", "whole_files"},
+    "reference": {"clip_lines", "large_surfels", "quaternions", "surfels", "images", "rendering", "whole_files"},
+    "blender": {
+        "array_files",
+        "claims",
+        "doubts",
+        "surfels",
+        "primaries",
+        "sampling",
+        "rendering",
+        "interchange",
+        "streaming",
+        "whole_files",
+    },
 }
 #: `reference` reads rendering's data, never its passes.
 RENDERING_DATA = {"scene", "shadows.maps", "settings", "frame", "view", "depth_range", "methods", "shading_models"}

@@ -6,13 +6,15 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from functools import partial
+from pathlib import Path
 from typing import BinaryIO, NamedTuple
 
 import numpy as np
 
+from ..whole_files import whole_file
 from .ply_header import TYPES, Element, Header, read_header
 from .ply_text import read_text
-from .whole_file import whole_file
 
 _VERTEX = "vertex"
 
@@ -84,7 +86,7 @@ def write_vertices(
 ) -> None:
     """A PLY file with (N,) columns as vertex properties, in the columns' types; little endian unless `ascii`.
 
-    The file appears under its name only once it is complete. Raises OSError if it cannot be written.
+    Raises as `whole_files.unfinished`.
     """
     codes = {name: np.asarray(column).dtype.str[1:] for name, column in columns.items()}
     count = len(next(iter(columns.values())))
@@ -95,13 +97,26 @@ def write_vertices(
     head += [f"comment {comment}" for comment in comments]
     head += [f"element {_VERTEX} {count}"]
     head += [f"property {_TYPE_NAMES[code]} {name}" for name, code in codes.items()]
-    with whole_file(path) as stream:
+    with whole_file(path, partial(_check_end, count)) as stream:
         stream.write("\n".join([*head, "end_header", ""]).encode("ascii"))
         if ascii:
             np.savetxt(stream, rows, fmt=" ".join(_TEXT_FORMATS.get(code, "%d") for code in codes.values()))
         else:
             # not `tofile`, whose error on a full disk names only two numbers
             stream.write(rows.view(np.uint8).data)
+
+
+def _check_end(count: int, file: Path) -> None:
+    """Raise OSError or ValueError if a written file does not end with the last of `count` rows."""
+    with open(file, "rb") as stream:
+        header = read_header(stream)
+        if header.byte_order is None:
+            stream.seek(header.size)
+            found = sum(chunk.count(b"\n") for chunk in iter(partial(stream.read, 1 << 20), b""))
+        else:
+            found = (os.path.getsize(file) - header.size) / _row_type(_vertices(header), header).itemsize
+    if not count == found == _vertices(header).count:
+        raise ValueError(f"It has {found:,.0f} of {count:,} points.")
 
 
 def _read_binary(

@@ -17,7 +17,7 @@ from dataclasses import dataclass, fields, is_dataclass
 
 import numpy as np
 
-from ..array_files import opened_arrays
+from ..array_files import opened_arrays, write_arrays
 from ..surfels import empty_surfels
 from .ldc.depth_cube import surface_of
 from .ldc.scan_conversion import Spans, expand
@@ -158,7 +158,7 @@ def _hex(data) -> str:
 
 
 def write_blocks(path: str | os.PathLike, blocks: list[Block], request: dict | None = None) -> None:
-    """Write the blocks of several meshes to one numpy .npz file. Raises OSError.
+    """Write the blocks of several meshes to one numpy .npz file. Raises as `whole_files.unfinished`.
 
     request: what was asked for, as values of JSON, for those who join the blocks.
     """
@@ -170,8 +170,7 @@ def write_blocks(path: str | os.PathLike, blocks: list[Block], request: dict | N
             for axis, spans in enumerate(images):
                 arrays |= {f"{turn}.{edge}.{axis}.{f.name}": getattr(spans, f.name) for f in fields(Spans)}
         arrays |= {f"{turn}.surfels.{name}": values for name, values in block.arrays.items()}
-    with open(path, "wb") as stream:
-        np.savez(stream, **arrays)
+    write_arrays(path, arrays)
 
 
 def read_block(path: str | os.PathLike, turn: int = 0) -> Block:

@@ -21,8 +21,8 @@ from .layout import COLUMNS, PAGE, SUM, SUMS
 
 
 class BlockFile:
-    """count: number of surfels. rows: number of rows, merged ones included. kind: type of a row. size: number of
-    blocks. roots: number of those without a parent.
+    """id: of what was written, or empty. count: number of surfels. rows: number of rows, merged ones included. kind:
+    type of a row. size: number of blocks. roots: number of those without a parent.
 
     Raises OSError if the file cannot be read, ValueError with a sentence if it has another format or version, or is cut
     off or damaged.
@@ -36,7 +36,7 @@ class BlockFile:
         try:
             self._state = self._now()
             directory = read_directory(self._stream, self._state[0], self.path.name)
-            self.count, self.rows = directory.surfels, directory.rows
+            self.id, self.count, self.rows = directory.id, directory.surfels, directory.rows
             self.size, self.roots = directory.blocks, directory.roots
             self.origin, self.kind = directory.origin, directory.kind
             self.is_solid, self.is_transparent = directory.is_solid, directory.is_transparent

@@ -15,6 +15,8 @@ from .layout import COLUMNS, FIELDS, HEAD, MAGIC, PAGE, SUM, SUMS, UNCHECKED_VER
 
 #: The longest directory that is read; a written one has some 1,500 bytes.
 _LONGEST = 1 << 20
+#: The longest id; a written one has 32 letters.
+_LONGEST_ID = 64
 _LARGEST = float(np.finfo(np.float64).max)
 
 
@@ -22,11 +24,12 @@ _LARGEST = float(np.finfo(np.float64).max)
 class Directory:
     """What a file says of itself, all of it possible.
 
-    surfels, rows, blocks, roots: their numbers. origin: (3,) float64. kind: type of a row. offsets: array -> where it
-    begins; all arrays end before the directory. sums: "row_sums" and "block_sums" -> the CRC-32 of the array; empty
-    for a file without checksums.
+    id: of what was written, or empty. surfels, rows, blocks, roots: their numbers. origin: (3,) float64. kind: type of
+    a row. offsets: array -> where it begins; all arrays end before the directory. sums: "row_sums" and "block_sums" ->
+    the CRC-32 of the array; empty for a file without checksums.
     """
 
+    id: str
     surfels: int
     rows: int
     blocks: int
@@ -97,6 +100,7 @@ def _directory(values, end: int, version: int) -> Directory:
             sizes[name] = pages * SUM.itemsize
             sums[name] = _count(_entry(arrays, name).get("checksum"), 0, 0xFFFFFFFF, f"the checksum of {name}")
     return Directory(
+        _id(values.get("id", "")),
         _count(values.get("surfels"), 1, rows, "the number of surfels"),
         rows,
         blocks,
@@ -114,6 +118,12 @@ def _directory(values, end: int, version: int) -> Directory:
 def _of_type(value, kind: type, what: str):
     if type(value) is not kind:
         raise _Wrong(f"{what} is {_short(value)} in its directory")
+    return value
+
+
+def _id(value) -> str:
+    if len(_of_type(value, str, "the id")) > _LONGEST_ID:
+        raise _Wrong(f"the id is {_short(value)} in its directory")
     return value
 
 

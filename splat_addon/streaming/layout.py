@@ -5,10 +5,11 @@ bytes.
 The first 32 bytes are the *head*: the word SURFELBL, the version (uint32), the CRC-32 of the directory (uint32), and
 the directory's offset and length (uint64 each). The *directory* is at the end of the file and is JSON:
 
-    {"surfels": N, "origin": [x, y, z], "is_solid": false, "is_transparent": false, "roots": R,
+    {"id": "4f0c...", "surfels": N, "origin": [x, y, z], "is_solid": false, "is_transparent": false, "roots": R,
      "fields": {"positions": 3, ...},
      "arrays": {"rows": {"offset": o, "count": E}, "first": {"offset": o, "type": "<i8", "shape": [B]}, ...}}
 
+*id* is random, 32 letters: no two files that were written have the same; the first ones have none.
 *rows* are E surfels and merged surfels; a row has the fields of `Surfels` one after another, with as many numbers as
 `fields` says, in the types of `Surfels`, all of them relative to the origin. Nine other arrays are the columns of
 `hierarchy.blocks.Blocks` for B blocks, in the types of `COLUMNS`: first and last are a block's run of rows, first_child

@@ -5,22 +5,26 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable
+from contextlib import closing
 from functools import partial
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import BinaryIO
 
 import numpy as np
 
 from ..hierarchy import build_hierarchy
 from ..hierarchy.blocks import Blocks, ranges
-from ..interchange.whole_file import whole_file
 from ..surfels import Surfels
+from ..whole_files import unfinished
+from .block_file import BlockFile
 from .buckets import Survey, filled, portions_of, surveyed
-from .layout import COLUMNS, FIELDS, PageSums, align, as_surfels, begin, finish, joined_rows
+from .layout import COLUMNS, FIELDS, PAGE, PageSums, align, as_surfels, begin, finish, joined_rows
 
 #: Surfels of one hierarchy, and those that are best given at once.
 PORTION = 1 << 20
+
+#: Pages of rows that are read back at once.
+_PAGES = 64
 
 #: Called with the finished share (0 to 1) and the step; returning False cancels.
 Progress = Callable[[float, str], bool]
@@ -41,9 +45,8 @@ def write_blocks(
 
     parts: sets of surfels, iterated twice; those with another origin than the first are moved to it. expected: about
         how many they have, so that counting them is a share of the progress; 0: not known.
-    The file appears under its name once it is complete. Until then it is written beside it, with temporary files of
-    the size of the surfels, and all that vanishes if anything fails. Raises ValueError as `surveyed` does, OSError,
-    WritingCancelled.
+    Until the file appears under its name, temporary files of the size of the surfels stand beside it. Raises ValueError
+    as `surveyed` does, WritingCancelled, and the exceptions of `whole_files.unfinished`.
     """
     total = expected
 
@@ -57,13 +60,26 @@ def write_blocks(
 
     survey = surveyed(parts, portion, told(0.0, 0.1, "Counting"))
     total = survey.count
-    target = Path(os.path.realpath(path))
-    with TemporaryDirectory(dir=target.parent, prefix=f".{target.name[:40]}-") as name:
-        folder = Path(name)
-        files = filled(parts, survey, folder, told(0.1, 0.3, "Sorting"))
-        with whole_file(target) as stream:
-            _write(stream, survey, portions_of(files, survey, portion), folder, told(0.3, 1.0, "Merging"))
+    with unfinished(path, partial(_check, survey.count)) as folder:
+        scratch = folder / "scratch"
+        scratch.mkdir()
+        files = filled(parts, survey, scratch, told(0.1, 0.3, "Sorting"))
+        with open(folder / Path(path).name, "wb") as stream:
+            _write(stream, survey, portions_of(files, survey, portion), scratch, told(0.3, 1.0, "Merging"))
     return survey.count
+
+
+def _check(count: int, file: Path) -> None:
+    """Read a written file to its end, with all checksums. Raises OSError or ValueError."""
+    with closing(BlockFile(file)) as written:
+        if written.count != count:
+            raise ValueError(f"It has {written.count:,} of {count:,} surfels.")
+        for first in range(0, -(-written.rows // PAGE), _PAGES):
+            _, are_good = written.read_rows(np.arange(first, min(first + _PAGES, -(-written.rows // PAGE))))
+            if not are_good.all():
+                raise ValueError(written.fault())
+        if None in map(written.read_blocks, range(-(-written.size // PAGE))):
+            raise ValueError(written.fault())
 
 
 def _write(stream: BinaryIO, survey: Survey, portions: Iterable[np.ndarray], folder: Path, told) -> None:
@@ -88,6 +104,7 @@ def _write(stream: BinaryIO, survey: Survey, portions: Iterable[np.ndarray], fol
     finish(
         stream,
         {
+            "id": os.urandom(16).hex(),
             "surfels": survey.count,
             "origin": survey.origin.tolist(),
             "is_solid": survey.is_solid,

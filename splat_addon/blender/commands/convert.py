@@ -11,7 +11,10 @@ from pathlib import Path
 
 import bpy
 
+from ...array_files import is_archive
+from ...claims import claimed
 from ...sampling import Sampling, sample_block, sample_surface, write_blocks
+from ...whole_files import unfinished
 from ..conversion.batch import Batch, ConversionBatch
 from ..conversion.mesh_conversion import sampling_options
 from ..conversion.mesh_settings import choices
@@ -19,7 +22,7 @@ from ..conversion.ties import tie
 from ..density_properties import DENSITIES
 from ..geometry.sources import has_surfaces
 from ..ids import CONVERSION_SETTINGS
-from .whole_results import unfinished
+from .written_files import check_blend, check_end_of_blend
 
 HELP = "make surfels of objects, in a new file"
 DESCRIPTION = (
@@ -67,19 +70,27 @@ def run(options: argparse.Namespace) -> Iterator[Path]:
         raise ValueError("A block needs both --block and --blocks.")
     out = result(options)
     file = out if options.block is None else block_file(out, options.block, options.blocks)
-    if not options.again and (file.is_file() or out.is_file()):
-        print(f"there already: {file if file.is_file() else out}", flush=True)
-        return
-    sources = sources_of(options.objects)
-    batch = batch_of(sources, options)
-    if options.block is None:
-        for conversion in batch.prepared(bpy.context):
-            batch.sample(conversion)
-        place(batch, settings_of(options))
-        save(out)
-    else:
-        _write_block(batch, file, options, request_of(sources, options))
-    yield file
+    with claimed(made_room(file)):
+        if not options.again and (there := _there_already(file, out)):
+            print(f"there already: {there}", flush=True)
+            return
+        sources = sources_of(options.objects)
+        batch = batch_of(sources, options)
+        if options.block is None:
+            for conversion in batch.prepared(bpy.context):
+                batch.sample(conversion)
+            place(batch, settings_of(options))
+            save(out)
+        else:
+            _write_block(batch, file, options, request_of(sources, options))
+        yield file
+
+
+def _there_already(file: Path, out: Path) -> Path | None:
+    """What an earlier run made of a conversion or of one of its blocks. Raises ValueError as `is_blend_there`."""
+    if is_blend_there(out):
+        return out
+    return file if file != out and is_archive(file) else None
 
 
 def _write_block(batch: ConversionBatch, file: Path, options: argparse.Namespace, request: dict) -> None:
@@ -88,8 +99,7 @@ def _write_block(batch: ConversionBatch, file: Path, options: argparse.Namespace
         for conversion in batch.prepared(bpy.context)
     ]
     refuse(batch)
-    with unfinished(file) as folder:
-        write_blocks(folder / file.name, blocks, request)
+    write_blocks(file, blocks, request)
 
 
 def request_of(sources: list[bpy.types.Object], options: argparse.Namespace) -> dict:
@@ -170,7 +180,29 @@ def place(batch: Batch, settings, kind: str = "MESH") -> None:
             print(note, flush=True)
 
 
+def made_room(file: Path) -> Path:
+    """The file of a result, whose folder exists now. Raises OSError."""
+    file.parent.mkdir(parents=True, exist_ok=True)
+    return file
+
+
+def is_blend_there(out: Path) -> bool:
+    """Whether there is a .blend that an earlier run made. Raises ValueError for one that is not whole, which is not
+    replaced, because it may be somebody's."""
+    try:
+        return out.is_file() and not check_end_of_blend(out)
+    except ValueError as error:
+        raise ValueError(f"{out} is there, but it is not whole: {error} Delete it, and run this again.") from error
+
+
 def save(out: Path) -> None:
-    """Save the file under a new name."""
-    with unfinished(out) as folder:
-        bpy.ops.wm.save_as_mainfile(filepath=str(folder / out.name), copy=True, check_existing=False)
+    """Save the file under a new name. Raises as `unfinished`, and RuntimeError with Blender's message."""
+    with unfinished(out, check_blend) as folder:
+        # Blender makes paths relative to the folder in which it saves, so that cannot be the hidden one
+        beside = folder.with_name(f"{folder.name}.blend")
+        try:
+            bpy.ops.wm.save_as_mainfile(filepath=str(beside), copy=True, check_existing=False)
+            beside.replace(folder / out.name)
+        finally:
+            for left in (beside, beside.with_name(f"{beside.name}@")):
+                left.unlink(missing_ok=True)

@@ -5,11 +5,13 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator
+from contextlib import contextmanager
 from itertools import count
 from pathlib import Path
 
 import bpy
 
+from ...claims import claimed, remove_leftovers
 from ...rendering.assembly.frame_parts import joined_parts
 from ...sampling import joined_blocks, read_block, read_request
 from ..engine import final_render
@@ -18,6 +20,8 @@ from .convert import (
     add_blocks_argument,
     batch_of,
     block_file,
+    is_blend_there,
+    made_room,
     place,
     refuse,
     request_of,
@@ -37,7 +41,6 @@ from .pictures import (
     tile_place,
 )
 from .render import write_picture
-from .whole_results import remove_leftovers
 
 HELP = "join tiles or blocks, or check that all frames exist"
 DESCRIPTION = (
@@ -60,8 +63,7 @@ def run(options: argparse.Namespace) -> Iterator[Path]:
     scene, frames = prepare_scene(options.out), frames_of(options)
     if options.tiles:
         yield from _tiles(scene, frames, options.tiles)
-    for frame in frames:
-        remove_leftovers(picture_file(scene, frame))
+    remove_leftovers(picture_file(scene, frame) for frame in frames)
     if missing := [frame for frame in frames if not is_there(scene, frame)]:
         raise ValueError(f"{len(missing):,} of {len(frames):,} frames are missing: {_shortened(missing)}; render them.")
     if not options.tiles:
@@ -71,16 +73,14 @@ def run(options: argparse.Namespace) -> Iterator[Path]:
 def _tiles(scene: bpy.types.Scene, frames: list[int], tiles: tuple[int, int]) -> Iterator[Path]:
     for frame in frames:
         parts = list(_tile_files(scene, frame, tiles))
-        if is_there(scene, frame):
-            print(f"there already: {picture_file(scene, frame)}", flush=True)
-        else:
+        with claimed(made_room(picture_file(scene, frame))), _consumed(parts, files_of(scene, frame)):
+            if is_there(scene, frame):
+                print(f"there already: {picture_file(scene, frame)}", flush=True)
+                continue
             if missing := [part for part in parts if not part.is_file()]:
                 raise ValueError(f"{len(missing)} of {len(parts)} tiles are missing, first {missing[0]}; render them.")
             _merge(scene, frame, parts)
             yield from files_of(scene, frame)
-        for part in parts:
-            part.unlink(missing_ok=True)
-            remove_leftovers(part)
 
 
 def _tile_files(scene: bpy.types.Scene, frame: int, tiles: tuple[int, int]) -> Iterator[Path]:
@@ -105,17 +105,42 @@ def _blocks(options: argparse.Namespace) -> Iterator[Path]:
         raise ValueError("Blocks are joined in a new file; give its path with --out, as for convert.")
     out = result(options)
     files = [block_file(out, number, options.blocks) for number in range(1, options.blocks + 1)]
-    if out.is_file():
-        print(f"there already: {out}", flush=True)
-    else:
+    with claimed(made_room(out)), _consumed(files, [out]):
+        if is_blend_there(out):
+            print(f"there already: {out}", flush=True)
+            return
         if missing := [file for file in files if not file.is_file()]:
             raise ValueError(f"{len(missing)} of {len(files)} blocks are missing, first {missing[0]}; convert them.")
         _join(files)
         save(out)
         yield out
-    for file in files:
-        file.unlink(missing_ok=True)
-        remove_leftovers(file)
+
+
+@contextmanager
+def _consumed(parts: list[Path], results: list[Path]) -> Iterator[None]:
+    """Delete the parts of which the results consist, if the context ends without an error; one that was written again
+    meanwhile stays.
+
+    Raises ValueError, and deletes nothing, if results that were there before are older than a part.
+    """
+    parts_before, results_before = _times(parts), _times(results)
+    yield
+    if _times(results) == results_before:
+        oldest = min(results_before.values())
+        if younger := [part for part, time in parts_before.items() if time > oldest]:
+            raise ValueError(
+                f"{results[0]} was there already and is older than {younger[0]}, so it lacks that; delete one of the "
+                "two, and run this again."
+            )
+    for part, time in parts_before.items():
+        if _times([part]).get(part) == time:
+            part.unlink()
+    remove_leftovers(parts)
+
+
+def _times(files: list[Path]) -> dict[Path, int]:
+    """When each of the files that are there was written, in nanoseconds."""
+    return {file: file.stat().st_mtime_ns for file in files if file.is_file()}
 
 
 def _join(files: list[Path]) -> None:

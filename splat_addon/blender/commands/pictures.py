@@ -14,6 +14,7 @@ import bpy
 from ..export.camera import picture_size, rendered_part
 from ..ids import ENGINE
 from ..operators.file_paths import absolute
+from .written_files import is_whole_picture
 
 #: A to B in steps of C, as Blender writes it (1..9), as farms do (1-9), or as Open Job Description does (1-9:2).
 _RANGE = re.compile(r"(-?\d+)(?:(?:-|\.\.)(-?\d+)(?::(\d+))?)?")
@@ -92,7 +93,13 @@ def picture_file(scene: bpy.types.Scene, frame: int) -> Path:
 
 
 def is_there(scene: bpy.types.Scene, frame: int) -> bool:
-    return all(file.is_file() for file in files_of(scene, frame))
+    """Whether the pictures of a frame are there, and can be used: an empty one is none."""
+    return all(map(is_whole_picture, files_of(scene, frame)))
+
+
+def expected_size(render: bpy.types.RenderSettings) -> tuple[int, int] | None:
+    """Width and height of a written picture; None where they depend on more than the size of the frame."""
+    return None if render.use_border or render.use_multiview else picture_size(render)
 
 
 def tile_file(picture: Path, tile: tuple[int, int], tiles: tuple[int, int]) -> Path:

@@ -10,11 +10,12 @@ from pathlib import Path
 
 import bpy
 
+from ...claims import claimed
 from ..conversion.points_conversion import PointsBatch
 from ..conversion.points_settings import PointsProperties, keywords, viewpoint
 from ..conversion.source_record import SurfelPointsSettings
 from ..geometry.points_extraction import has_points
-from .convert import named, place, result, save
+from .convert import is_blend_there, made_room, named, place, result, save
 
 HELP = "make surfels of bare points, in a new file"
 DESCRIPTION = (
@@ -36,16 +37,17 @@ def run(options: argparse.Namespace) -> Iterator[Path]:
     """Convert, and yield the written file. Raises ValueError or OSError; nothing is saved if any object cannot be
     converted."""
     out = result(options)
-    if out.is_file() and not options.again:
-        print(f"there already: {out}", flush=True)
-        return
-    sources = _sources(options.objects)
-    batch = PointsBatch(sources, keywords(options), lambda: viewpoint(options, bpy.context), options.flatness)
-    for conversion in batch.prepared(bpy.context):
-        batch.sample(conversion)
-    place(batch, options, "POINTS")
-    save(out)
-    yield out
+    with claimed(made_room(out)):
+        if not options.again and is_blend_there(out):
+            print(f"there already: {out}", flush=True)
+            return
+        sources = _sources(options.objects)
+        batch = PointsBatch(sources, keywords(options), lambda: viewpoint(options, bpy.context), options.flatness)
+        for conversion in batch.prepared(bpy.context):
+            batch.sample(conversion)
+        place(batch, options, "POINTS")
+        save(out)
+        yield out
 
 
 def _sources(names: list[str] | None) -> list[bpy.types.Object]:

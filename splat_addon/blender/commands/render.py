@@ -5,16 +5,22 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import bpy
 
+from ...array_files import is_archive
+from ...claims import claimed
 from ...rendering import Frame
 from ...rendering.assembly.frame_parts import Part, write_part
+from ...whole_files import unfinished
 from ..engine import final_render
 from ..export.camera import picture_size
+from .convert import made_room
 from .pictures import (
     add_picture_arguments,
+    expected_size,
     files_of,
     frames_of,
     is_there,
@@ -25,7 +31,7 @@ from .pictures import (
     tile_file,
     tile_place,
 )
-from .whole_results import unfinished
+from .written_files import check_picture
 
 HELP = "draw frames, or a tile of each"
 DESCRIPTION = (
@@ -64,11 +70,11 @@ def _frames(scene: bpy.types.Scene, frames: list[int], again: bool) -> Iterator[
 
 
 def write_picture(scene: bpy.types.Scene, frame: int) -> None:
-    """Write the frame's files, either all or none. Raises RuntimeError with Blender's message."""
-    place, pattern = picture_file(scene, frame), scene.render.filepath
+    """Write the frame's files, either all or none. Raises as `unfinished`, and RuntimeError with Blender's message."""
+    place, pattern = made_room(picture_file(scene, frame)), scene.render.filepath
     scene.frame_set(frame)
     try:
-        with unfinished(place) as folder:
+        with unfinished(place, partial(check_picture, size=expected_size(scene.render))) as folder:
             scene.render.filepath = str(folder / place.name)
             _render(write_still=True)
     finally:
@@ -79,15 +85,15 @@ def _tiles(scene: bpy.types.Scene, frames: list[int], options: argparse.Namespac
     place = tile_place(scene, options.tile, options.tiles)
     for frame in frames:
         file = tile_file(picture_file(scene, frame), options.tile, options.tiles)
-        if not options.again and (file.is_file() or is_there(scene, frame)):
-            print(f"there already: {file if file.is_file() else picture_file(scene, frame)}", flush=True)
-            continue
-        scene.frame_set(frame)
-        with look_through(scene, place):
-            drawn = _drawn()
-        with unfinished(file) as folder:
-            write_part(folder / file.name, Part(picture_size(scene.render), place, frame), drawn)
-        yield file
+        with claimed(made_room(file)):
+            if not options.again and (is_archive(file) or is_there(scene, frame)):
+                print(f"there already: {file if is_archive(file) else picture_file(scene, frame)}", flush=True)
+                continue
+            scene.frame_set(frame)
+            with look_through(scene, place):
+                drawn = _drawn()
+            write_part(file, Part(picture_size(scene.render), place, frame), drawn)
+            yield file
 
 
 def _drawn() -> dict[tuple[str, str], Frame]:

@@ -9,15 +9,15 @@ from pathlib import Path
 
 import bpy
 
+from ...claims import claimed
 from ...interchange import PlyPortions
-from ...streaming import PORTION, write_blocks
+from ...streaming import PORTION, described, write_blocks
 from ...streaming.layout import SUFFIX
 from ...surfels import Surfels, portions
 from ..geometry.sources import is_surfel_object
 from ..geometry.surfel_files import file_of
 from ..geometry.world_surfels import world_surfels
-from .convert import add_density_arguments, batch_of, refuse, sources_of
-from .whole_results import unfinished
+from .convert import add_density_arguments, batch_of, made_room, refuse, sources_of
 
 HELP = "store surfels in a file that views stream"
 DESCRIPTION = (
@@ -40,20 +40,21 @@ def run(options: argparse.Namespace) -> Iterator[Path]:
     out = options.out.absolute()
     if out.suffix != SUFFIX:
         raise ValueError(f"The result is a {SUFFIX} file, not {out.name!r}.")
-    if out.is_file() and not options.again:
-        print(f"there already: {out}", flush=True)
-        return
-    if options.ply:
-        parts = PlyPortions(options.ply)
-        expected = len(parts)
-    else:
-        parts = _of_objects(options)
-        expected = sum(map(len, parts))
-    with unfinished(out) as folder:
-        count = write_blocks(folder / out.name, parts, _printed(), expected=expected)
-    for note in (f"{count:,} surfels", *(parts.notes() if options.ply else ())):
-        print(note, flush=True)
-    yield out
+    with claimed(made_room(out)):
+        if not options.again and _is_there(out):
+            print(f"there already: {out}", flush=True)
+            return
+        parts = PlyPortions(options.ply) if options.ply else _of_objects(options)
+        expected = len(parts) if options.ply else sum(map(len, parts))
+        count = write_blocks(out, parts, _printed(), expected=expected)
+        for note in (f"{count:,} surfels", *(parts.notes() if options.ply else ())):
+            print(note, flush=True)
+        yield out
+
+
+def _is_there(out: Path) -> bool:
+    """Whether an earlier run made the file. Raises ValueError with a sentence for one that is not whole."""
+    return out.is_file() and bool(described(out))
 
 
 def _of_objects(options: argparse.Namespace) -> Sequence[Surfels]:

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...array_files import opened_arrays
+from ...array_files import opened_arrays, write_arrays
 from ..cryptomatte import Cryptomatte
 from ..frame import Frame
 from ..settings import OUTPUTS
@@ -34,7 +34,7 @@ class Part:
 
 
 def write_part(path: str | os.PathLike, part: Part, frames: dict[tuple[str, str], Frame]) -> None:
-    """Write a part. frames: by the names of view layer and view. Raises OSError."""
+    """Write a part. frames: by the names of view layer and view. Raises as `whole_files.unfinished`."""
     arrays, names = {}, []
     for number, frame in enumerate(frames.values()):
         names.append({})
@@ -53,8 +53,7 @@ def write_part(path: str | os.PathLike, part: Part, frames: dict[tuple[str, str]
         "frames": list(frames),
         "names": names,
     }
-    with open(path, "wb") as stream:
-        np.savez(stream, about=np.frombuffer(json.dumps(about).encode("utf-8"), np.uint8), **arrays)
+    write_arrays(path, {"about": np.frombuffer(json.dumps(about).encode("utf-8"), np.uint8), **arrays})
 
 
 def joined_parts(paths: Iterable[str | os.PathLike], size: tuple[int, int], number: int) -> dict[tuple, Frame]:

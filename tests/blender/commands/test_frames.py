@@ -24,11 +24,25 @@ def test_chunks_give_the_pictures_of_an_animation_bit_by_bit(animation, surfels_
 
 
 def test_what_is_there_stays(animation, surfels_command, tmp_path):
-    (tmp_path / "frame_0002.exr").write_bytes(b"kept")
+    picture = tmp_path / "frame_0002.exr"
+    assert surfels_command("render", "--frames", "1")[0] == 0
+    (tmp_path / "frame_0001.exr").rename(picture)
+    kept = picture.read_bytes()
     code, said = surfels_command("render", "--frames", "2")
-    assert (code, (tmp_path / "frame_0002.exr").read_bytes()) == (0, b"kept") and "there already" in said
-    assert surfels_command("render", "--frames", "2", "--again")[0] == 0
-    assert (tmp_path / "frame_0002.exr").read_bytes() != b"kept"
+    assert (code, picture.read_bytes()) == (0, kept) and "there already" in said
+    assert surfels_command("render", "--frames", "2", "--again")[0] == 0 and picture.read_bytes() != kept
+
+
+@pytest.mark.parametrize("share", [0, 0.5, 0.999])
+def test_an_empty_picture_or_a_part_of_one_is_drawn_again(share, animation, surfels_command, pixels, tmp_path):
+    picture = tmp_path / "frame_0001.exr"
+    assert surfels_command("render", "--frames", "1")[0] == 0
+    whole = picture.read_bytes()
+    picture.write_bytes(whole[: int(share * len(whole))])
+    code, said = surfels_command("merge", "--frames", "1")
+    assert code == 1 and "1 of 1 frames are missing: 1" in said
+    code, said = surfels_command("render", "--frames", "1")
+    assert code == 0 and f"wrote {picture}" in said and pixels(picture).any()
 
 
 def test_a_frame_that_fails_leaves_nothing_and_says_why(animation, surfels_command, tmp_path):
