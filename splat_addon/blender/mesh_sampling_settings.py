@@ -15,6 +15,7 @@ from .density_properties import (
     spacing_property,
     texture_mapped_property,
 )
+from .doors import on_change
 from .enum_values import check_choices
 from .geometry.sources import asked_of
 from .ids import OBJECT_SETTINGS, RENDER_SETTINGS
@@ -29,6 +30,7 @@ NUMBERED = {
 }
 
 
+@on_change("Reading meshes again")
 def _read_again(settings, context) -> None:
     """Make a 3D view read the scene again; Blender does not report changes that a script makes."""
     settings.id_data.update_tag()
@@ -37,6 +39,7 @@ def _read_again(settings, context) -> None:
 def _meant(density: str):
     """Choose the density that a number belongs to when a script sets the number."""
 
+    @on_change("Choosing the density")
     def update(settings, context) -> None:
         if settings.mesh_density == "AUTOMATIC":
             settings.mesh_density = density

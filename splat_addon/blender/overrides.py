@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 import bpy
-from bpy.app.handlers import persistent
 
+from .doors import unattended, with_handlers
 from .ids import OBJECT_SETTINGS, SURFEL_RECORD
 
 
-@persistent
+@unattended("Keeping library overrides")
 def _before_save(*_) -> None:
     """Read the settings of the objects in libraries, which makes them if the library has none.
 
@@ -21,9 +21,4 @@ def _before_save(*_) -> None:
                 getattr(owner.override_library.reference, name)
 
 
-def register():
-    bpy.app.handlers.save_pre.append(_before_save)
-
-
-def unregister():
-    bpy.app.handlers.save_pre.remove(_before_save)
+register, unregister = with_handlers((bpy.app.handlers.save_pre, _before_save))

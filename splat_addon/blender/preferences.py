@@ -15,6 +15,7 @@ from bpy.props import IntProperty, PointerProperty
 
 from ..rendering import open_device
 from .conversion.mesh_settings import PROPERTY_NAMES, SurfelConversionSettings, draw_properties
+from .doors import register_classes_factory, unattended, with_handlers
 from .ids import CONVERSION_SETTINGS
 
 #: The package that Blender knows the add-on by: the extension, or in a checkout `splat_addon`.
@@ -105,20 +106,21 @@ def use_defaults(scene: bpy.types.Scene) -> None:
             setattr(settings, name, getattr(chosen.conversion, name))
 
 
-@bpy.app.handlers.persistent
+@unattended("Setting up the scenes of a file")
 def _after_load(*_):
     for scene in bpy.data.scenes:
         use_defaults(scene)
 
 
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory((SurfelPreferences,))
+_register_handlers, _unregister_handlers = with_handlers((bpy.app.handlers.load_post, _after_load))
+_register_classes, _unregister_classes = register_classes_factory((SurfelPreferences,))
 
 
 def register():
     _register_classes()
-    bpy.app.handlers.load_post.append(_after_load)
+    _register_handlers()
 
 
 def unregister():
-    bpy.app.handlers.load_post.remove(_after_load)
+    _unregister_handlers()
     _unregister_classes()

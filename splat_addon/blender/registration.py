@@ -5,8 +5,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-import bpy
 from bpy.props import PointerProperty
+
+from .doors import register_classes_factory
 
 #: The option `override` of a property that can be changed in a library override, and is kept with the file then.
 OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}
@@ -19,7 +20,7 @@ def with_property(owner: type, name: str, settings: type, *classes: type) -> tup
     classes: registered with it; a group inside another must come first. Library overrides may change those of the
         settings that say so (`OVERRIDABLE`).
     """
-    register_classes, unregister_classes = bpy.utils.register_classes_factory((*classes, settings))
+    register_classes, unregister_classes = register_classes_factory((*classes, settings))
 
     def register():
         register_classes()

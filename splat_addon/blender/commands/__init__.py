@@ -12,7 +12,8 @@ import sys
 
 import bpy
 
-from ..engine.final_render import sentence_of
+from .. import doors
+from ..faults import sentence_of
 from . import convert, info, merge, points, render, store, template
 
 NAME = "surfels"
@@ -37,15 +38,16 @@ def run(arguments: list[str]) -> int:
         options = _parser().parse_args(arguments)
     except SystemExit as leaving:  # argparse exits after --help and after wrong arguments
         return int(leaving.code or 0)
+    told = len(doors.told)
     try:
         _check_opened(options)
         for path in _COMMANDS[options.command].run(options):
             print(f"wrote {path}", flush=True)
     except Exception as error:
-        sentence = f"{error.filename}: {error.strerror}." if isinstance(error, OSError) else sentence_of(error)
-        print(f"surfels {options.command}: error: {sentence.strip()}", file=sys.stderr, flush=True)
+        print(f"surfels {options.command}: error: {sentence_of(error).strip()}", file=sys.stderr, flush=True)
         return 1
-    return 0
+    # a handler, say, that failed meanwhile has said so
+    return int(len(doors.told) > told)
 
 
 def _check_opened(options: argparse.Namespace) -> None:

@@ -16,6 +16,7 @@ from mathutils import Matrix, Vector
 
 from ...doubts import doubts
 from ...sampling import Sampling, SamplingCancelled, sample_surface
+from ..faults import sentence_of
 from .as_rendered import as_rendered
 from .following import at_origin_of_source
 from .gathering import groups
@@ -59,8 +60,8 @@ class Batch(ABC):
                 with as_rendered(sources, context) as depsgraph:
                     conversion = self._prepare(sources, depsgraph)
                 yield conversion
-            except ValueError as error:
-                self.refused.append((sources[0].name, str(error)))
+            except Exception as error:
+                self.refused.append((sources[0].name, sentence_of(error)))
 
     def sample(self, conversion, report=lambda share: None) -> None:
         """Sample one source; may run in another thread. report: called regularly with `share`."""
@@ -74,9 +75,8 @@ class Batch(ABC):
             self._sample(conversion, progress)
         except SamplingCancelled:
             return
-        except (ValueError, MemoryError) as error:
-            sentence = str(error) or "Not enough memory; make fewer surfels."
-            self.refused.append((conversion.name, sentence))
+        except Exception as error:
+            self.refused.append((conversion.name, sentence_of(error)))
         else:
             self._sampled.append(conversion)
 
@@ -147,8 +147,8 @@ class ConversionBatch(Batch):
             try:
                 with as_rendered(conversion.sources, context) as depsgraph:
                     bake(conversion, depsgraph)
-            except ValueError as error:
-                conversion.notes.append(f"Nothing was baked: {error}")
+            except Exception as error:
+                conversion.notes.append(f"Nothing was baked: {sentence_of(error)}")
         conversion.notes += doubts(conversion.surfels)
         super()._finish(conversion, context)
 

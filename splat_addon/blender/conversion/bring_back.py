@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import bpy
 import numpy as np
-from bpy.app.handlers import persistent
 
+from ..doors import unattended, with_handlers
 from .source_record import record_of, sources_in
 
 #: session_uid of each object in the file at the last check.
@@ -45,7 +45,7 @@ def bring_back() -> None:
                     source.hide_set(False, view_layer=view_layer)
 
 
-@persistent
+@unattended("Showing sources whose surfels are gone")
 def _after_update(scene, depsgraph) -> None:
     """Check the file when other objects are in it."""
     global _objects
@@ -56,9 +56,4 @@ def _after_update(scene, depsgraph) -> None:
         bring_back()
 
 
-def register():
-    bpy.app.handlers.depsgraph_update_post.append(_after_update)
-
-
-def unregister():
-    bpy.app.handlers.depsgraph_update_post.remove(_after_update)
+register, unregister = with_handlers((bpy.app.handlers.depsgraph_update_post, _after_update))

@@ -14,7 +14,6 @@ from dataclasses import dataclass
 
 import bpy
 import numpy as np
-from bpy.app.handlers import persistent
 
 from ...sampling import (
     NO_FLAT_EXTENTS,
@@ -25,6 +24,7 @@ from ...sampling import (
     outline,
     projected_area,
 )
+from ..doors import unattended, with_handlers
 from ..geometry.mesh_extraction import read_without_pixels
 from ..geometry.sources import has_surfaces
 from .gathering import frame_of, gather
@@ -126,21 +126,23 @@ _extents: dict[tuple, Extent] = {}
 _wanted: dict[tuple, Choices] = {}
 
 
+@unattended("Counting surfels for the sidebar")
 def _measure_wanted() -> None:
     depsgraph = bpy.context.evaluated_depsgraph_get()
     objects = {object_.session_uid: object_ for object_ in bpy.context.view_layer.objects}
-    for key, choices in _wanted.items():
+    wanted = dict(_wanted)
+    _wanted.clear()
+    for key, choices in wanted.items():
         sources = [objects.get(uid) for uid in key[0]]
         if all(source is not None and has_surfaces(source) and source.mode == "OBJECT" for source in sources):
             _extents[key] = measure(sources, depsgraph, choices)
-    _wanted.clear()
     for window in bpy.context.window_manager.windows:
         for area in window.screen.areas:
             if area.type == "VIEW_3D":
                 area.tag_redraw()
 
 
-@persistent
+@unattended("Following changes for the sidebar")
 def forget_changed(scene, depsgraph):
     """Drop the extents that a depsgraph update invalidates."""
     updates = [update for update in depsgraph.updates if isinstance(update.id, bpy.types.Object)]
@@ -153,13 +155,13 @@ def forget_changed(scene, depsgraph):
             del _extents[key]
 
 
-@persistent
+@unattended("Forgetting counts for the sidebar")
 def forget_all(*_):
     """Drop everything after loading another file, undo or redo."""
     _extents.clear()
 
 
-_HANDLERS = (
+register, _unregister_handlers = with_handlers(
     (bpy.app.handlers.depsgraph_update_post, forget_changed),
     (bpy.app.handlers.frame_change_post, forget_changed),
     (bpy.app.handlers.undo_post, forget_all),
@@ -168,14 +170,8 @@ _HANDLERS = (
 )
 
 
-def register():
-    for handlers, function in _HANDLERS:
-        handlers.append(function)
-
-
 def unregister():
-    for handlers, function in _HANDLERS:
-        handlers.remove(function)
+    _unregister_handlers()
     if bpy.app.timers.is_registered(_measure_wanted):
         bpy.app.timers.unregister(_measure_wanted)
     forget_all()

@@ -4,17 +4,17 @@
 from __future__ import annotations
 
 import sys
-import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import bpy
-from bpy.app.handlers import persistent
 
 from ...rendering import Frame, RenderCancelled, Renderer, open_device
+from ..doors import unattended, with_handlers
 from ..export.camera import depth_of_field_notes, rendered_part, view_camera
 from ..export.live_meshes import LiveMeshes
 from ..export.scene import Notes, SurfelStore, export_scene
+from ..faults import is_worded, sentence_of
 from ..materials import matcap_images
 from ..preferences import most_bytes
 from ..properties import final_settings, stops_where_broken
@@ -41,7 +41,7 @@ def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> No
         _render_preview(engine, depsgraph)
         return
     settings = final_settings(depsgraph.view_layer, depsgraph.scene, outputs_of(depsgraph.view_layer))
-    engine.update_stats("", "Reading surfels")
+    _tell_step(engine, "Reading surfels")
     resources = _acquire_resources()
     is_cancelled = False
     try:
@@ -181,17 +181,8 @@ def report_failure(engine: bpy.types.RenderEngine, error: Exception) -> None:
     mode."""
     if not engine.is_preview:
         _release_resources()
-    engine.report({"ERROR"}, f"Surfel render failed: {sentence_of(error)}")
-
-
-def sentence_of(error: Exception) -> str:
-    """The message of an error. Errors not meant for users are also printed to the console with a traceback."""
-    if isinstance(error, ValueError | RuntimeError):
-        return str(error)
-    traceback.print_exception(error)
-    if isinstance(error, MemoryError):
-        return "Not enough memory; render fewer surfels or a smaller picture."
-    return f"This is a fault of the extension ({type(error).__name__}: {error}); the console says where it happened."
+    where = "" if is_worded(error) else f" at {_step!r}"
+    engine.report({"ERROR"}, f"Surfel render failed{where}: {sentence_of(error)}")
 
 
 class _Resources:
@@ -215,7 +206,7 @@ class _Resources:
 _resources: _Resources | None = None
 
 
-@persistent
+@unattended("Looking for edited images")
 def _before_render(*_) -> None:
     """Look again at all images: Blender does not tell what was edited since the last render."""
     matcap_images.doubt()
@@ -250,15 +241,20 @@ def _is_last_of_render(engine, depsgraph) -> bool:
 _ARE_FRAMES_NAMED = bool({"-f", "--render-frame"} & set(sys.argv))
 
 
+#: What the render is doing.
+_step = ""
+
+
+def _tell_step(engine, step: str) -> None:
+    global _step
+    _step = step
+    engine.update_stats("", step)
+
+
 def _progress(engine, turn: tuple[int, int], done: float, step: str) -> bool:
     engine.update_progress((turn[0] + done) / turn[1])
-    engine.update_stats("", step.title())
+    _tell_step(engine, step.title())
     return not engine.test_break()
 
 
-def register():
-    bpy.app.handlers.render_init.append(_before_render)
-
-
-def unregister():
-    bpy.app.handlers.render_init.remove(_before_render)
+register, unregister = with_handlers((bpy.app.handlers.render_init, _before_render))

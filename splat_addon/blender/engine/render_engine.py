@@ -6,6 +6,7 @@ from __future__ import annotations
 import bpy
 
 from ...rendering import background
+from ..doors import register_classes_factory
 from ..ids import ENGINE, ENGINE_LABEL
 from . import final_render, render_passes, viewport
 
@@ -35,7 +36,7 @@ class SurfelSplattingEngine(bpy.types.RenderEngine):
         viewport.guarded(self, viewport.draw, context, depsgraph)
 
 
-register, _unregister_classes = bpy.utils.register_classes_factory((SurfelSplattingEngine,))
+register, _unregister_classes = register_classes_factory((SurfelSplattingEngine,))
 
 
 def unregister():

@@ -13,15 +13,16 @@ from weakref import ref
 import bpy
 
 from ...rendering import Arrival, Pace, Refinement, Renderer, Shown, open_device
+from ..doors import unattended
 from ..export.camera import viewport_camera
 from ..export.live_meshes import LiveMeshes
 from ..export.scene import export_scene
 from ..export.sliced_store import SlicedStore
+from ..faults import sentence_of
 from ..materials import matcap_images
 from ..preferences import most_bytes
 from ..properties import viewport_rate, viewport_settings
 from ..spoken import said
-from .final_render import sentence_of
 
 #: Notes on the scene of the 3D view that was read last.
 last_notes: list[str] = []
@@ -229,6 +230,7 @@ def _more(state: _State) -> float:
     return _LOOK if state.is_waiting and not (state.store.has_news or state.arrival.loading.has_news) else 0.0
 
 
+@unattended("Refining a view")
 def _timer(engine: ref, wait: Callable[[_State], float]) -> float | None:
     """Seconds until the next call, or None to stop. The view may have been closed meanwhile, and its engine freed."""
     alive = engine()

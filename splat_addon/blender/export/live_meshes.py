@@ -212,7 +212,7 @@ class LiveMeshes:
                     sampled += self._sampled_instances(live, depsgraph, density, texture_mapped)
                 if live.drawn_at and len(live.drawn_part):
                     drawn += self._polygon_instances(live, notes)
-            except ValueError as error:
+            except Exception as error:
                 notes.leave_out(live.owner, error)
         self._kept = {name: live for name, live in self._kept.items() if name in self._names}
         return sampled, drawn

@@ -21,6 +21,7 @@ from ...surfels import Surfels
 from ..conversion.placement import finite_matrix
 from ..conversion.shape_following import not_bent
 from ..conversion.source_record import is_stood_in, sources_in
+from ..faults import sentence_of
 from ..geometry.attributes import (
     Points,
     has_surfels,
@@ -59,9 +60,12 @@ class Notes:
         if count:
             self.counts[sentence] += count
 
-    def leave_out(self, name: str, error: ValueError) -> None:
-        """Record that an object or light of this name cannot be drawn."""
-        self.left_out.append(f"{name} is left out: {error}")
+    def leave_out(self, name: str, error: Exception) -> None:
+        """Record that an object or light of this name cannot be drawn. Without memory, nothing can: raises MemoryError
+        again."""
+        if isinstance(error, MemoryError):
+            raise error
+        self.left_out.append(f"{name} is left out: {sentence_of(error)}")
         self.add(self.left_out[-1])
 
     def sentences(self) -> list[str]:
@@ -156,7 +160,7 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
         if entry.show_self and depsgraph.view_layer_eval.use_solid and _is_seen(entry, depsgraph, notes):
             try:
                 things.add(entry)
-            except ValueError as error:
+            except Exception as error:
                 notes.leave_out(entry.object.name, error)
     for sentence in sorted(filter(None, (not_bent(each, depsgraph) for each in things.made))):
         notes.add(sentence)
@@ -170,7 +174,12 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
     )
     lights = (replace(light, receivers=light_sets.lit_by(number)) for number, light in enumerate(lights))
     scene = Scene((*things.surfels, *sampled), tuple(lights), polygons=tuple(polygons))
-    return store.world.around(scene, _world_of(depsgraph), notes), notes
+    world = _world_of(depsgraph)
+    try:
+        return store.world.around(scene, world, notes), notes
+    except Exception as error:
+        notes.leave_out(f"The world {world.name!r}", error)
+        return scene, notes
 
 
 class _Things:
@@ -267,7 +276,7 @@ def _lights(depsgraph: bpy.types.Depsgraph, notes: Notes) -> tuple[list[Light], 
         if entry.object.type == "LIGHT" and entry.show_self:
             try:
                 light = light_of(entry.object.data, finite_matrix(entry.matrix_world), notes)
-            except ValueError as error:
+            except Exception as error:
                 notes.leave_out(entry.object.name, error)
                 continue
             if light:

@@ -85,7 +85,7 @@ class EXPORT_SCENE_OT_surfels_ply(ExportHelper, bpy.types.Operator):
             why = file_sentence(error)
             self.report({"ERROR"}, said("{path} cannot be written: {why}", path=self.filepath, why=why))
             return {"CANCELLED"}
-        except (ValueError, MemoryError) as error:
+        except Exception as error:
             self.report({"ERROR"}, file_sentence(error))
             return {"CANCELLED"}
         if unusable:

@@ -6,6 +6,8 @@ from __future__ import annotations
 import bpy
 from bpy.props import StringProperty
 
+from ..faults import sentence_of
+
 #: Blender warns scripts that pass // to a path that does not declare support for it; 4.5 knows the option, 5.2 warns.
 _OPTIONS = {"SKIP_PRESET", "PATH_SUPPORTS_BLEND_RELATIVE"}
 
@@ -34,7 +36,5 @@ def absolute(filepath: str) -> str:
 
 
 def file_sentence(error: Exception) -> str:
-    """The message for an error: a ValueError's own sentence, or an OSError's reason without its number."""
-    if isinstance(error, OSError):
-        return f"{error.strerror or error}."
-    return str(error) or "Not enough memory; use fewer surfels."
+    """The message for an error beside a file's name: an OSError's reason without its number, or the sentence."""
+    return f"{error.strerror}." if isinstance(error, OSError) and error.strerror else sentence_of(error)

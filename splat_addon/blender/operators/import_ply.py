@@ -103,7 +103,7 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ModalWriting, ImportHelper, 
             if not len(surfels):
                 raise ValueError(f"The file gives no surfels{': ' if notes else ''}{'; '.join(notes)}.")
             notes += doubts(surfels)
-        except (ValueError, OSError, MemoryError) as error:
+        except Exception as error:
             return self._fail(error)
         made = add_surfel_object(Path(self._name).stem, surfels, Matrix(), [active_collection(context)])
         select_only(context, [made])

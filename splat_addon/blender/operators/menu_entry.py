@@ -7,13 +7,16 @@ from collections.abc import Callable
 
 import bpy
 
+from ..doors import register_classes_factory, unattended
+
 
 def with_menu_entry(
     operator: type[bpy.types.Operator], menu: type[bpy.types.Menu], draw: Callable, others: tuple[type, ...] = ()
 ) -> tuple:
     """The functions `register` and `unregister` of an operator's module. draw(menu, context): adds the entry. others:
     further classes to register."""
-    register_class, unregister_class = bpy.utils.register_classes_factory((operator, *others))
+    register_class, unregister_class = register_classes_factory((operator, *others))
+    draw = unattended(f"The entry of {operator.bl_label} in a menu")(draw)
 
     def register():
         register_class()

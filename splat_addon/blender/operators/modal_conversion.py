@@ -35,6 +35,7 @@ class ModalConversion:
 
     #: The kind under which the record stores the conversion.
     kind = ""
+    _timer = None
 
     def execute(self, context):
         batch = self._new_batch(context)
@@ -85,13 +86,9 @@ class ModalConversion:
         self._end_modal(context)
 
     def _next_source(self, context):
-        try:
-            if self._sampling is not None:
-                self._sampling.result()
-            conversion = None if self._batch.is_cancelled else next(self._prepared, None)
-        except BaseException:
-            self._end_modal(context)
-            raise
+        if self._sampling is not None:
+            self._sampling.result()
+        conversion = None if self._batch.is_cancelled else next(self._prepared, None)
         if conversion is None:
             self._end_modal(context)
             return self._finish(context, self._batch)
@@ -104,8 +101,12 @@ class ModalConversion:
         context.workspace.status_text_set(said("Converting to surfels: {percent:.0f}%   Esc cancels", percent=percent))
 
     def _end_modal(self, context):
+        """End what `invoke` began, once."""
+        timer, self._timer = self._timer, None
+        if timer is None:
+            return
         self._executor.shutdown()
-        context.window_manager.event_timer_remove(self._timer)
+        context.window_manager.event_timer_remove(timer)
         context.window_manager.progress_end()
         context.workspace.status_text_set(None)
 

@@ -16,9 +16,6 @@ from .file_paths import file_sentence
 
 _TIMER_SECONDS = 0.1
 
-#: The errors that writing raises, each with a sentence for the user.
-_ERRORS = (OSError, ValueError, MemoryError)
-
 
 class Writing:
     """A file that is being written, and appears once it is complete. share: the finished share. is_cancelled: set from
@@ -46,6 +43,8 @@ class Writing:
 class ModalWriting:
     """A mix-in for operators. Nothing is changed in Blender before `_finish`."""
 
+    _timer = None
+
     def _begin(self, context: bpy.types.Context) -> Writing:
         """The file to write. Raises OSError or ValueError with a sentence."""
         raise NotImplementedError
@@ -65,7 +64,7 @@ class ModalWriting:
             writing = self._begin(context)
             writing.write(manager.progress_update)
             self._finish(context, writing)
-        except _ERRORS as error:
+        except Exception as error:
             return self._fail(error)
         finally:
             manager.progress_end()
@@ -77,7 +76,7 @@ class ModalWriting:
             return self.write_now(context)
         try:
             self._writing = self._begin(context)
-        except _ERRORS as error:
+        except Exception as error:
             return self._fail(error)
         self._executor = ThreadPoolExecutor(1)
         self._written = self._executor.submit(self._writing.write)
@@ -101,7 +100,7 @@ class ModalWriting:
         except WritingCancelled:
             self.report({"INFO"}, said("Storing was cancelled; nothing was changed"))
             return {"CANCELLED"}
-        except _ERRORS as error:
+        except Exception as error:
             return self._fail(error)
         return {"FINISHED"}
 
@@ -112,8 +111,12 @@ class ModalWriting:
             self._end_modal(context)
 
     def _end_modal(self, context):
+        """End what `invoke` began, once."""
+        timer, self._timer = self._timer, None
+        if timer is None:
+            return
         self._executor.shutdown()
-        context.window_manager.event_timer_remove(self._timer)
+        context.window_manager.event_timer_remove(timer)
         context.workspace.status_text_set(None)
 
     def _fail(self, error: Exception):

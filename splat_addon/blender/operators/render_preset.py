@@ -7,6 +7,7 @@ import bpy
 from bpy.props import EnumProperty
 
 from ...rendering.presets import PRESETS
+from ..doors import register_classes_factory
 from ..ids import RENDER_PRESET, RENDER_SETTINGS
 
 
@@ -41,4 +42,4 @@ def draw_presets(layout: bpy.types.UILayout, settings) -> None:
         button.preset = preset.name
 
 
-register, unregister = bpy.utils.register_classes_factory((RENDER_OT_surfel_preset,))
+register, unregister = register_classes_factory((RENDER_OT_surfel_preset,))

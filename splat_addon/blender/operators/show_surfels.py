@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import bpy
 
+from ..doors import register_classes_factory
 from ..ids import ENGINE, ENGINE_LABEL, SHOW_SURFELS
 
 
@@ -30,4 +31,4 @@ class VIEW3D_OT_surfels_show(bpy.types.Operator):
         return {"FINISHED"}
 
 
-register, unregister = bpy.utils.register_classes_factory((VIEW3D_OT_surfels_show,))
+register, unregister = register_classes_factory((VIEW3D_OT_surfels_show,))

@@ -8,6 +8,7 @@ import bpy
 from ...streaming import PORTION
 from ...streaming.layout import SUFFIX
 from ...surfels import portions
+from ..doors import register_classes_factory
 from ..geometry.attributes import read_surfels
 from ..geometry.sources import is_surfel_object
 from ..geometry.surfel_files import file_of, keep_coarsest, relative_path
@@ -71,4 +72,4 @@ class OBJECT_OT_surfels_to_file(ModalWriting, bpy.types.Operator):
         self.report({"INFO"}, said("{count:,} surfels -> {path}", count=count, path=storing.path))
 
 
-register, unregister = bpy.utils.register_classes_factory((OBJECT_OT_surfels_to_file,))
+register, unregister = register_classes_factory((OBJECT_OT_surfels_to_file,))

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import bpy
 
+from ..doors import register_classes_factory
 from ..export.camera import PANORAMA_PROPERTIES
 from .engine_panel import EnginePanel
 
@@ -30,4 +31,4 @@ class DATA_PT_surfel_panorama(EnginePanel, bpy.types.Panel):
             column.prop(camera, name)
 
 
-register, unregister = bpy.utils.register_classes_factory((DATA_PT_surfel_panorama,))
+register, unregister = register_classes_factory((DATA_PT_surfel_panorama,))

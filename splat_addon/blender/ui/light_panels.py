@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import bpy
 
+from ..doors import register_classes_factory
 from ..ids import RENDER_SETTINGS
 from ..materials.node_trees import has_switch
 from .engine_panel import EnginePanel
@@ -110,6 +111,6 @@ class DATA_PT_surfel_light_nodes(_LightPanel, bpy.types.Panel):
             layout.template_node_view(tree, output, output.inputs["Surface"])
 
 
-register, unregister = bpy.utils.register_classes_factory(
+register, unregister = register_classes_factory(
     (DATA_PT_surfel_light, DATA_PT_surfel_light_beam, DATA_PT_surfel_light_shadow, DATA_PT_surfel_light_nodes)
 )

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import bpy
 
+from ..doors import register_classes_factory
 from ..geometry.sources import has_surfaces, is_surfel_object
 from ..ids import OBJECT_SETTINGS
 from ..mesh_sampling_settings import SPLIT_BY
@@ -48,4 +49,4 @@ class OBJECT_PT_surfel_splatting(EnginePanel, bpy.types.Panel):
         self.layout.prop(settings, "detail")
 
 
-register, unregister = bpy.utils.register_classes_factory((OBJECT_PT_surfel_visibility, OBJECT_PT_surfel_splatting))
+register, unregister = register_classes_factory((OBJECT_PT_surfel_visibility, OBJECT_PT_surfel_splatting))

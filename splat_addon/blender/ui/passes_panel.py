@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import bpy
 
+from ..doors import register_classes_factory
 from ..engine.render_passes import ViewLayerPasses
 from ..ids import LAYER_SETTINGS
 from .engine_panel import EnginePanel
@@ -40,4 +41,4 @@ class VIEWLAYER_PT_surfel_passes(EnginePanel, bpy.types.Panel):
         levels.prop(view_layer, "pass_cryptomatte_depth", text="Levels")
 
 
-register, unregister = bpy.utils.register_classes_factory((VIEWLAYER_PT_surfel_passes,))
+register, unregister = register_classes_factory((VIEWLAYER_PT_surfel_passes,))

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import bpy
 
+from ..doors import register_classes_factory
 from ..ids import EXPORT_PLY, IMPORT_PLY, POINTS_PANEL, SIDEBAR_TAB, SURFELS_FROM_POINTS
 from ..operators.surfels_from_points import selected_points
 
@@ -29,4 +30,4 @@ class VIEW3D_PT_surfels_from_points(bpy.types.Panel):
         row.operator(EXPORT_PLY, icon="EXPORT")
 
 
-register, unregister = bpy.utils.register_classes_factory((VIEW3D_PT_surfels_from_points,))
+register, unregister = register_classes_factory((VIEW3D_PT_surfels_from_points,))

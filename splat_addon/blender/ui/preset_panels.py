@@ -14,6 +14,7 @@ from bl_operators.presets import AddPresetBase
 from bl_ui.utils import PresetPanel
 
 from ..conversion.mesh_settings import PROPERTY_NAMES
+from ..doors import register_classes_factory
 from ..ids import ADD_CONVERSION_PRESET, ADD_RENDER_PRESET, CONVERSION_SETTINGS, RENDER_SETTINGS
 from ..properties import SurfelSplattingSettings
 
@@ -95,7 +96,7 @@ _CONVERSION = _Kind(
 RENDER_PT_surfel_presets, _add_render_preset = _classes(_RENDER)
 VIEW3D_PT_surfel_conversion_presets, _add_conversion_preset = _classes(_CONVERSION)
 
-register, unregister = bpy.utils.register_classes_factory(
+register, unregister = register_classes_factory(
     (
         RENDER_PT_surfel_presets,
         _add_render_preset,

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 import bpy
 
 from ...rendering.methods import get_method
+from ..doors import register_classes_factory
 from ..ids import ENGINE, RENDER_SETTINGS, TEXTS
 from ..mesh_sampling_settings import NUMBERED
 from ..operators.render_preset import draw_presets
@@ -258,7 +259,7 @@ def _has_successor(panel: type) -> bool:
     return not former and hasattr(bpy.types, f"EEVEE_NEXT_{name}")
 
 
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+_register_classes, _unregister_classes = register_classes_factory(
     (
         RENDER_PT_surfel_sampling,
         RENDER_PT_surfel_surface,

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 import bpy
 
+from ..doors import register_classes_factory
 from ..engine import final_render, viewport
 from ..spoken import said
 from .engine_panel import EnginePanel
@@ -79,6 +80,6 @@ def measured(stats: dict) -> Iterator[str]:
     yield said("Device: {device}, {backend}", **stats)
 
 
-register, unregister = bpy.utils.register_classes_factory(
+register, unregister = register_classes_factory(
     (RENDER_PT_surfel_report, RENDER_PT_surfel_report_times, RENDER_PT_surfel_report_plan)
 )

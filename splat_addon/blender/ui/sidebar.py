@@ -14,7 +14,9 @@ from ..conversion.mesh_conversion import Choices
 from ..conversion.mesh_settings import PROPERTY_NAMES, choices, draw_properties
 from ..conversion.prediction import Extent, known_extents
 from ..conversion.source_record import record_of, sources_of
+from ..doors import register_classes_factory
 from ..export.object_detail import detail_of, finer
+from ..faults import sentence_of
 from ..geometry.sources import is_surfel_object
 from ..geometry.surfel_files import file_of
 from ..ids import (
@@ -104,8 +106,8 @@ def prediction(context: bpy.types.Context, sources: list[bpy.types.Object], aske
         return said("Counting …")
     try:
         found = [_density_of(*pair, asked, context.view_layer.depsgraph) for pair in zip(parts, extents, strict=True)]
-    except ValueError as error:
-        return str(error)
+    except Exception as error:
+        return sentence_of(error)
     text = prediction_text([extent.predict(f) for extent, (f, _) in zip(extents, found, strict=True)])
     if asked.tolerance or any(extent.flat is UNKNOWN_FLAT_EXTENTS for extent in extents):
         text = said("{count}, fewer where flat", count=text)
@@ -133,4 +135,4 @@ def prediction_text(predictions: list[tuple[int, float]]) -> str:
     return said("≈ {count:,} surfels, spacing {low} to {high}", count=sum(counts), low=low, high=high)
 
 
-register, unregister = bpy.utils.register_classes_factory((VIEW3D_PT_surfels_from_mesh,))
+register, unregister = register_classes_factory((VIEW3D_PT_surfels_from_mesh,))

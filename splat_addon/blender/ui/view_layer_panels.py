@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import bpy
 
+from ..doors import register_classes_factory
 from .engine_panel import EnginePanel
 
 
@@ -41,4 +42,4 @@ class VIEWLAYER_PT_surfel_override(EnginePanel, bpy.types.Panel):
             self.layout.prop(context.view_layer, name)
 
 
-register, unregister = bpy.utils.register_classes_factory((VIEWLAYER_PT_surfel_filter, VIEWLAYER_PT_surfel_override))
+register, unregister = register_classes_factory((VIEWLAYER_PT_surfel_filter, VIEWLAYER_PT_surfel_override))

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import bpy
 
+from ..doors import register_classes_factory
 from .engine_panel import EnginePanel
 
 
@@ -25,4 +26,4 @@ class WORLD_PT_surfel_sun(EnginePanel, bpy.types.Panel):
         row.prop(world, "sun_threshold", text="Threshold")
 
 
-register, unregister = bpy.utils.register_classes_factory((WORLD_PT_surfel_sun,))
+register, unregister = register_classes_factory((WORLD_PT_surfel_sun,))
