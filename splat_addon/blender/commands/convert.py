@@ -22,6 +22,7 @@ from ..conversion.ties import tie
 from ..density_properties import DENSITIES
 from ..geometry.sources import has_surfaces
 from ..ids import CONVERSION_SETTINGS
+from .out_paths import file_at
 from .written_files import check_blend, check_end_of_blend
 
 HELP = "make surfels of objects, in a new file"
@@ -33,7 +34,7 @@ DESCRIPTION = (
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--out", required=True, help="the new .blend")
+    parser.add_argument("--out", required=True, help="the new .blend, or its FOLDER/")
     parser.add_argument("--objects", nargs="+", help="names; without them everything visible that has surfaces")
     add_density_arguments(parser)
     add_blocks_argument(parser)
@@ -109,11 +110,8 @@ def request_of(sources: list[bpy.types.Object], options: argparse.Namespace) -> 
 
 
 def result(options: argparse.Namespace) -> Path:
-    """The path of the result. Raises ValueError if it is not a .blend."""
-    out = Path(options.out).absolute()
-    if out.suffix != ".blend":
-        raise ValueError(f"The result is a .blend, not {out.name!r}.")
-    return out
+    """The path of the result; in a folder it is called after the .blend. Raises ValueError if it is not a .blend."""
+    return file_at(options.out, ".blend", f"{Path(bpy.data.filepath).stem}-surfels")
 
 
 def block_file(out: Path, number: int, count: int) -> Path:

@@ -14,6 +14,7 @@ import bpy
 from ..export.camera import picture_size, rendered_part
 from ..ids import ENGINE
 from ..operators.file_paths import absolute
+from .out_paths import path_at
 from .written_files import is_whole_picture
 
 #: A to B in steps of C, as Blender writes it (1..9), as farms do (1-9), or as Open Job Description does (1-9:2).
@@ -49,7 +50,9 @@ def add_picture_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--first", type=int, help="the first frame of a chunk, with --chunk")
     parser.add_argument("--chunk", type=int, help="how many frames the chunk has")
     parser.add_argument("--last", type=int, help="no frame of the chunk lies after this one")
-    parser.add_argument("--out", help="path of the pictures, with # where the number goes; without it the scene's own")
+    parser.add_argument(
+        "--out", help="path of the pictures, with # where the number goes, or their FOLDER/; without it the scene's own"
+    )
     parser.add_argument("--tiles", type=pair, help="columns and rows of each frame's tiles, like 4x4")
 
 
@@ -70,9 +73,7 @@ def prepare_scene(out: str | None) -> bpy.types.Scene:
     """The file's scene, set up for this engine. Raises ValueError for a file without a path, or for video output."""
     scene = bpy.context.scene
     scene.render.engine = ENGINE
-    if out:
-        scene.render.filepath = out if out.startswith("//") else str(Path(out).absolute())
-    scene.render.filepath = absolute(scene.render.filepath)
+    scene.render.filepath = path_at(out, "") if out else absolute(scene.render.filepath)
     if scene.render.is_movie_format:
         raise ValueError("Several machines cannot write one video file; choose an image format.")
     return scene

@@ -25,7 +25,7 @@ DESCRIPTION = (
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--out", required=True, help="the new .blend")
+    parser.add_argument("--out", required=True, help="the new .blend, or its FOLDER/")
     parser.add_argument("--objects", nargs="+", help="names; without them all visible points")
     for name in PointsProperties.__annotations__:
         setting = SurfelPointsSettings.bl_rna.properties[name]

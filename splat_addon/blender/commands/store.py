@@ -18,6 +18,7 @@ from ..geometry.sources import is_surfel_object
 from ..geometry.surfel_files import file_of
 from ..geometry.world_surfels import world_surfels
 from .convert import add_density_arguments, batch_of, made_room, refuse, sources_of
+from .out_paths import file_at
 
 HELP = "store surfels in a file that views stream"
 DESCRIPTION = (
@@ -27,7 +28,7 @@ DESCRIPTION = (
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--out", required=True, type=Path, help=f"the new file, NAME{SUFFIX}")
+    parser.add_argument("--out", required=True, help=f"the new file, NAME{SUFFIX}, or its FOLDER/")
     source = parser.add_mutually_exclusive_group(required=True)
     source.add_argument("--objects", nargs="+", help="names of surfel objects, or of objects to convert")
     source.add_argument("--ply", type=Path, help="a PLY file of surfels, of any size")
@@ -37,9 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> Iterator[Path]:
     """Store, and yield the written file. Raises ValueError or OSError; then there is no file."""
-    out = options.out.absolute()
-    if out.suffix != SUFFIX:
-        raise ValueError(f"The result is a {SUFFIX} file, not {out.name!r}.")
+    out = file_at(options.out, SUFFIX, options.ply.stem if options.ply else "")
     with claimed(made_room(out)):
         if not options.again and _is_there(out):
             print(f"there already: {out}", flush=True)

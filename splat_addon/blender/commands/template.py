@@ -8,19 +8,22 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from ..translations.messages import DEFAULT, messages
+from .out_paths import file_at
 
 HELP = "write the interface's texts for translators"
 DESCRIPTION = "Writes a gettext template of all names, tooltips and labels. A translation is a file in translations/."
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", type=Path, help="the template, NAME.pot")
+    parser.add_argument("file", help="the template, NAME.pot, or its FOLDER/")
 
 
 def run(options: argparse.Namespace) -> Iterator[Path]:
     """Writes the template and yields its path."""
-    options.file.write_text(template(), encoding="utf-8")
-    yield options.file
+    out = file_at(options.file, ".pot", "surfel_splatting")
+    out.parent.mkdir(parents=True, exist_ok=True)
+    out.write_text(template(), encoding="utf-8")
+    yield out
 
 
 def template() -> str:
