@@ -19,7 +19,8 @@ def add_on():
 
 @pytest.fixture(autouse=True)
 def empty_file(add_on):
-    bpy.ops.wm.read_factory_settings(use_empty=True)
+    """Preferences stay, because to reset them takes five times as long: a test puts back what it changes."""
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
 
 
 @pytest.fixture

@@ -2,6 +2,7 @@
 """A small animated scene in a file of its own, and a way to call the commands as the command line does."""
 
 import math
+import shutil
 from pathlib import Path
 
 import bpy
@@ -13,9 +14,10 @@ from splat_addon.blender import commands
 SIZE = (48, 32)
 
 
-@pytest.fixture
-def animation(empty_file, tmp_path):
-    """A file anim.blend: a ball of surfels that moves over frames 1 to 4 and shadows a floor of polygons."""
+@pytest.fixture(scope="session")
+def animation_file(add_on, tmp_path_factory) -> Path:
+    """A file with a ball of surfels that moves over frames 1 to 4 and shadows a floor of polygons."""
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     scene = bpy.context.scene
     scene.render.engine = "SURFEL_SPLATTING"
     bpy.ops.mesh.primitive_uv_sphere_add(segments=16, ring_count=8, radius=0.8, location=(-1, 0, 0.8))
@@ -36,12 +38,22 @@ def animation(empty_file, tmp_path):
     scene.camera = camera
     scene.render.resolution_x, scene.render.resolution_y = SIZE
     scene.frame_start, scene.frame_end = 1, 4
+    scene.surfel_splatting.samples = scene.surfel_splatting.blur_samples = 2
     settings = scene.render.image_settings
     settings.file_format, settings.color_depth, settings.color_mode = "OPEN_EXR", "32", "RGBA"
     scene.render.filepath = "//frame_"
     ball.name = "ball"
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "anim.blend"))
-    return scene
+    file = tmp_path_factory.mktemp("animation") / "anim.blend"
+    bpy.ops.wm.save_as_mainfile(filepath=str(file))
+    return file
+
+
+@pytest.fixture
+def animation(animation_file, empty_file, tmp_path):
+    """The scene of a file of one's own, anim.blend in tmp_path, as animation_file makes it."""
+    file = shutil.copy(animation_file, tmp_path / "anim.blend")
+    bpy.ops.wm.open_mainfile(filepath=str(file))
+    return bpy.context.scene
 
 
 @pytest.fixture
