@@ -24,7 +24,7 @@ from splat_addon.quaternions import axes_columns
 from splat_addon.rendering import Renderer, Settings, open_device, plan
 from splat_addon.rendering.detail.levels import hierarchy_of, sight
 from splat_addon.rendering.device import Device
-from splat_addon.sampling import sample_mesh
+from splat_addon.sampling import PLAIN, sample_mesh
 
 DEVICES = ("standalone",)
 QUICK = {"size": 64, "resolution": 300, "model": "bunny.obj.gz"}
@@ -127,7 +127,7 @@ def arguments(parser) -> None:
 def run(options, report) -> None:
     device = open_device(options.device)
     report.header(device, f"{options.model}, {options.size} x {options.size} pixels, medians of {options.turns} turns")
-    surfels = sample_mesh(load(options.models / options.model), resolution=options.resolution)
+    surfels = sample_mesh(load(options.models / options.model), resolution=options.resolution, **PLAIN)
     scene, camera = in_view(surfels, options.size, fov=FIELD_OF_VIEW)
     settings = Settings(outputs=("color",), shadow_resolution=0, profile=True)
     (instance,) = plan(scene, camera, settings).facts["levels"]

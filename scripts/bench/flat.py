@@ -13,7 +13,6 @@ from functools import partial
 import numpy as np
 import trimesh
 
-from bench.representation import KINDS as CONVERSIONS
 from measuring.timing import Spread, in_turn, processor
 from splat_addon.reference.metrics import psnr
 from splat_addon.rendering import (
@@ -34,7 +33,7 @@ from splat_addon.sampling import TriangleMesh, sample_surface
 DEVICES = ("standalone",)
 QUICK = {"size": 48, "cells": [40]}
 #: name -> options of `sample_surface`, as the operator gives them
-KINDS = {"same": CONVERSIONS["fit"] | {"lifts": True}, "large": CONVERSIONS["flat"] | {"lifts": True}}
+KINDS = {"same": {"tolerance": None}, "large": {}}
 CHALK = (Material(roughness=1.0, ior=1.0),)
 COLUMNS = "cells", "surfels", "surfels, large", "conversion", "frame", "dB", "dB, large"
 

@@ -18,7 +18,7 @@ from environment import Problem
 from measuring.timing import Spread, in_turn, wall
 from splat_addon.rendering import Camera, Instance, Light, Renderer, Scene, Settings, look_at, open_device
 from splat_addon.rendering.features import hidden_objects
-from splat_addon.sampling import TriangleMesh, sample_mesh
+from splat_addon.sampling import PLAIN, TriangleMesh, sample_mesh
 
 DEVICES = ("standalone",)
 QUICK = {"size": (96, 54), "resolutions": [300], "along": 8}
@@ -41,7 +41,7 @@ def run(options, report) -> None:
 
 
 def rows(device, resolution: int, options):
-    surfels = sample_mesh(city(options.along), resolution=resolution)
+    surfels = sample_mesh(city(options.along), resolution=resolution, **PLAIN)
     middle = options.along / 2
     pose = look_at((middle - 0.5, -1.5, 1.2), (middle - 0.1, 8, 1.0))
     camera = Camera.perspective(pose, 0.8, tuple(options.size), 0.05, 100)

@@ -17,6 +17,7 @@ from splat_addon.reference.bare import uncovered_points
 from splat_addon.reference.metrics import psnr
 from splat_addon.rendering import Light, Renderer, Settings, open_device
 from splat_addon.sampling import (
+    PLAIN,
     Channel,
     Surface,
     Tolerance,
@@ -112,7 +113,8 @@ def adaptive(meshes: dict, options):
         mesh = meshes[name]
         spacing = grid_spacing(mesh, resolution=options.resolution)
         for cells in TOLERANCES:
-            made = sample_surface(mesh, resolution=options.resolution, tolerance=Tolerance(cells * spacing))
+            larger = PLAIN | {"tolerance": Tolerance(cells * spacing)}
+            made = sample_surface(mesh, resolution=options.resolution, **larger)
             surfels, left = made.surfels, len(made.surfels)
             merged = np.flatnonzero(surfels.scales[:, 1] > 1.3 * spacing)[: options.points // 10]
             found = distances(mesh, surfels, merged).max(initial=0) / spacing
@@ -123,7 +125,7 @@ def adaptive(meshes: dict, options):
 
 def sampled(mesh: TriangleMesh, resolution: float, reduction: str) -> Surfels:
     """Samples without the surfels of parts that no ray hits."""
-    made = sample_surface(mesh, resolution=resolution, reduction=reduction)
+    made = sample_surface(mesh, resolution=resolution, reduction=reduction, **PLAIN)
     rows = slice(len(made.surfels) - made.small_parts)
     return replace(made.surfels, **{name: array[rows] for name, array in made.surfels.arrays().items()})
 
@@ -139,8 +141,8 @@ def draw(meshes: dict, renderer: Renderer, report) -> None:
         mesh = meshes["CesiumMilkTruck.glb"]
         view = mesh.bounds(), (0.9, 0.5, 0.9), (0, 1, 0), 1.45
         spacing = grid_spacing(mesh, resolution=200)
-        plain = sample_surface(mesh, resolution=200).surfels
-        merged = sample_surface(mesh, resolution=200, tolerance=Tolerance(0.1 * spacing)).surfels
+        plain = sample_surface(mesh, resolution=200, **PLAIN).surfels
+        merged = sample_surface(mesh, resolution=200, **(PLAIN | {"tolerance": Tolerance(0.1 * spacing)})).surfels
         views = [render(renderer, surfels, *view, sun=True) for surfels in (plain, merged)]
         report.say(f"Adaptive van: {len(plain):,} and {len(merged):,} surfels, PSNR {psnr(*views):.1f} dB.")
         sizes = np.log2(merged.scales[:, 1] / merged.scales[:, 1].min()).clip(0, 3) / 3

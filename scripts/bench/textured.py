@@ -20,7 +20,7 @@ from splat_addon.reference.lettering import page
 from splat_addon.reference.metrics import psnr
 from splat_addon.reference.seen_texture import seen_texture
 from splat_addon.rendering import Camera, Instance, Renderer, Scene, Settings, SurfaceTexture, look_at, open_device
-from splat_addon.sampling import Channel, Image, Surface, Texture, TriangleMesh, sample_surface
+from splat_addon.sampling import PLAIN, Channel, Image, Surface, Texture, TriangleMesh, sample_surface
 
 DEVICES = ("standalone",)
 QUICK = {"size": 32, "resolutions": [8, 16]}
@@ -44,7 +44,7 @@ def run(options, report) -> None:
     report.header(renderer.device, how)
     mesh, pose = globe(image), look_at((2.2, -1.6, 0.9), (0, 0, 0))
     camera = Camera.perspective(pose, math.radians(42), (options.size, options.size), 0.1, 10)
-    made = {r: sample_surface(mesh, resolution=r, texture_mapped=True).surfels for r in options.resolutions}
+    made = {r: sample_surface(mesh, resolution=r, texture_mapped=True, **PLAIN).surfels for r in options.resolutions}
 
     def rows():
         for name, (settings, pixel_filter) in METHODS.items():

@@ -21,7 +21,7 @@ from .mesh.corners import corner_values, normal_map_texture
 from .mesh.joining import have_same_values, joined, transformed
 from .mesh.solid import is_solid
 from .mesh.triangle_mesh import TriangleMesh
-from .options import DEFAULT_SPLAT_SIZE, SamplingOptions
+from .options import DEFAULT_SPLAT_SIZE, FLAT, PLAIN, SamplingOptions
 from .points import PointsReport, surfels_from_points
 from .progress import SamplingCancelled
 from .refine.adaptive import Tolerance
@@ -33,8 +33,10 @@ __all__ = [
     "DEFAULT_CREASE_ANGLE",
     "DEFAULT_GRAZING_ANGLE",
     "DEFAULT_SPLAT_SIZE",
+    "FLAT",
     "LEAST_GRAZING_ANGLE",
     "NO_FLAT_EXTENTS",
+    "PLAIN",
     "REDUCTIONS",
     "STRETCHED_SHARE",
     "UNKNOWN_FLAT_EXTENTS",

@@ -14,6 +14,7 @@ import numpy as np
 from .density import grid_spacing, mean_width
 from .mesh.cleaning import drop_unusable
 from .mesh.triangle_mesh import TriangleMesh
+from .options import PLAIN
 from .sample import sample_mesh
 
 #: Cells along the longest edge for the outline, and the maximum distance, in cells, from a surface point to the outline
@@ -42,7 +43,7 @@ def outline(mesh: TriangleMesh) -> Outline:
     if not len(mesh):
         return Outline(np.zeros((0, 3)), 0.0, 0.0)
     spacing = grid_spacing(mesh, resolution=_OUTLINE_RESOLUTION)
-    surfels = sample_mesh(mesh, spacing=spacing)
+    surfels = sample_mesh(mesh, spacing=spacing, **PLAIN)
     return Outline(surfels.origin + surfels.positions, _OUTLINE_REACH * spacing, mean_width(mesh))
 
 

@@ -4,14 +4,24 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 from ..large_surfels import SAMPLE_SIZE
+from .edges.borders import DEFAULT_CREASE_ANGLE
 from .ldc.reductions import DEFAULT_GRAZING_ANGLE, check_grazing_angle, find_reduction
 from .refine.adaptive import Tolerance
 
 #: Half-axis of a splat in H.
 DEFAULT_SPLAT_SIZE = SAMPLE_SIZE
+
+#: Larger surfels only inside flat faces, where they change nothing.
+FLAT = Tolerance(0.0)
+
+#: Options of plain surfels: all of one size in the planes of their triangles, with nothing but what a sample gives, as
+#: the papers have them. `sample_mesh(mesh, resolution=256, **PLAIN)`
+PLAIN: Mapping[str, object] = MappingProxyType({"tolerance": None, "crease_angle": None, "lifts": False})
 
 
 def check_crease_angle(angle: float | None) -> None:
@@ -53,12 +63,13 @@ class Density:
 
 @dataclass(frozen=True)
 class SamplingOptions(Density):
-    """The options of `sample_surface`.
+    """The options of `sample_surface`. Their defaults are those of all conversions; `PLAIN` turns every refinement off.
 
     splat_size: smaller half-axis of a splat, in H.
     tolerance: how far from flat the surface may be where a larger surfel replaces several; None: all have the same
         size. With a distance of 0, larger ones are only inside flat faces that look the same everywhere
-        (`refine.flat_blocks`), which requires fits_blending; reductions that merge samples leave them out.
+        (`refine.flat_blocks`), which requires fits_blending; reductions that merge samples, and a count that is to be
+        met, leave them out.
     deforms: whether the surfels will follow a deformation of the mesh; then larger ones are inside single triangles,
         which stay flat, and closed parts keep nothing that they touch from being seen (`refine.two_sided`).
     texture_mapped: surfels whose colour is a single image also store their texture coordinates, so that the image is
@@ -68,6 +79,7 @@ class SamplingOptions(Density):
         None: no clip lines. fits_blending: each surfel gets its own blend depth from the surface
         (`attributes.blend_depths`). fits_planes: surfels lie in planes that fit the samples around them instead of
         their triangles' (`refine.fitted_planes`); requires fits_blending; reductions that merge samples leave it out.
+        None of these two: as there are clip lines or not.
     lifts: surfels store how high the smooth surface of the corners' normals lies above them (`attributes.lifts`), if it
         does so anywhere.
 
@@ -75,17 +87,21 @@ class SamplingOptions(Density):
     """
 
     splat_size: float = DEFAULT_SPLAT_SIZE
-    tolerance: Tolerance | None = None
+    tolerance: Tolerance | None = FLAT
     deforms: bool = False
     texture_mapped: bool = False
-    crease_angle: float | None = None
-    fits_blending: bool = False
-    fits_planes: bool = False
-    lifts: bool = False
+    crease_angle: float | None = DEFAULT_CREASE_ANGLE
+    fits_blending: bool | None = None
+    fits_planes: bool | None = None
+    lifts: bool = True
 
     def __post_init__(self):
         super().__post_init__()
         check_crease_angle(self.crease_angle)
+        if self.fits_blending is None:
+            object.__setattr__(self, "fits_blending", self.crease_angle is not None)
+        if self.fits_planes is None:
+            object.__setattr__(self, "fits_planes", self.fits_blending)
         if self.fits_planes and not self.fits_blending:
             raise ValueError("Planes are fitted where blend depths tell that the surface bends; fit blending too.")
         if not (math.isfinite(self.splat_size) and self.splat_size > 0):

@@ -75,8 +75,10 @@ class Sampling:
 
 
 def sample_mesh(mesh: TriangleMesh, **options) -> Surfels:
-    """The surfels of `sample_surface`, with the same options."""
-    return sample_surface(mesh, **options).surfels
+    """The surfels of `sample_surface`, with the same options; of a closed mesh they are solid, so that backs are not
+    drawn."""
+    sampling = sample_surface(mesh, **options)
+    return sampling.surfels.as_solid() if sampling.keeps_both_sides and is_solid(mesh) else sampling.surfels
 
 
 def sample_surface(mesh: TriangleMesh, *, progress: Progress | None = None, **options) -> Sampling:
@@ -84,6 +86,7 @@ def sample_surface(mesh: TriangleMesh, *, progress: Progress | None = None, **op
     the others.
 
     options: the fields of `SamplingOptions`; exactly one of spacing, resolution and count is required.
+        The others' defaults are those of Blender's conversion; `**PLAIN` gives plain surfels.
     progress: called between chunks with the finished share, 0 to 1; if it returns False, `SamplingCancelled` is raised.
         Unusable triangles are left out; `drop_unusable` counts them. Positions are relative to the middle.
     A connected part between the rays gets one surfel. A mesh without usable triangles gives no surfels.
@@ -168,7 +171,8 @@ class SamplingRun:
     @property
     def _enlarges(self) -> bool:
         options = self.options
-        return options.tolerance is not None and options.fits_blending and self._chosen.merge is None
+        is_possible = options.fits_blending and self._chosen.merge is None and options.count is None
+        return options.tolerance is not None and is_possible
 
     def filled(
         self, images: tuple[Spans, ...], report: Callable[[float], None], edge: int = 1

@@ -9,15 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from splat_addon.rendering import Camera, Scene, look_at
-from splat_addon.sampling import (
-    DEFAULT_CREASE_ANGLE,
-    Channel,
-    Surface,
-    TriangleMesh,
-    VertexColors,
-    is_solid,
-    sample_surface,
-)
+from splat_addon.sampling import DEFAULT_CREASE_ANGLE, Channel, Surface, TriangleMesh, VertexColors, is_solid
+from tests.plain import sample_surface
 
 _OUTLINE = np.array(((0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)), np.float64) - 0.8
 

@@ -10,7 +10,8 @@ import numpy as np
 import trimesh
 
 from splat_addon.rendering import Instance, Light, Material
-from splat_addon.sampling import TriangleMesh, sample_mesh
+from splat_addon.sampling import TriangleMesh
+from tests.plain import sample_mesh
 
 CHALK = (Material(roughness=1.0, ior=1.0),)
 LAMP_POINTS = 400

@@ -9,7 +9,8 @@ import trimesh
 
 from splat_addon.reference.triangles import render_triangles
 from splat_addon.rendering import Camera, Scene, Settings, look_at
-from splat_addon.sampling import DEFAULT_CREASE_ANGLE, Channel, Surface, TriangleMesh, is_solid, sample_surface
+from splat_addon.sampling import DEFAULT_CREASE_ANGLE, Channel, Surface, TriangleMesh, is_solid
+from tests.plain import sample_surface
 
 OPTIONS = {"crease_angle": DEFAULT_CREASE_ANGLE, "fits_blending": True, "fits_planes": True}
 SETTINGS = Settings(method="mip", shading="flat", transparent_film=True, detail_tolerance=0)

@@ -19,8 +19,9 @@ from splat_addon.rendering.plan.executor import describe
 from splat_addon.rendering.upload.packing import pack_clip_lines
 from splat_addon.rendering.upload.storages import STORAGES
 from splat_addon.rendering.upload.stored_order import clipped_places, stored_order
-from splat_addon.sampling import DEFAULT_CREASE_ANGLE, Channel, Surface, TriangleMesh, VertexColors, sample_mesh
+from splat_addon.sampling import DEFAULT_CREASE_ANGLE, Channel, Surface, TriangleMesh, VertexColors
 from splat_addon.surfels import concatenate
+from tests.plain import sample_mesh
 from tests.rendering.creased import angle_iron, clipped_iron
 
 FLAT = Settings(shading="flat", transparent_film=True)

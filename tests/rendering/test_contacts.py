@@ -7,15 +7,8 @@ import trimesh
 from splat_addon.reference.metrics import srgb
 from splat_addon.reference.triangles import render_triangles
 from splat_addon.rendering import Camera, Scene, Settings, look_at
-from splat_addon.sampling import (
-    DEFAULT_CREASE_ANGLE,
-    Channel,
-    Surface,
-    Tolerance,
-    TriangleMesh,
-    VertexColors,
-    sample_mesh,
-)
+from splat_addon.sampling import DEFAULT_CREASE_ANGLE, Channel, Surface, Tolerance, TriangleMesh, VertexColors
+from tests.plain import sample_mesh
 
 OPTIONS = {
     "crease_angle": DEFAULT_CREASE_ANGLE,

@@ -9,7 +9,8 @@ import pytest
 
 from splat_addon.reference import render_exact, scenes
 from splat_addon.rendering import Camera, Instance, Light, Material, Scene, Settings, look_at, plan
-from splat_addon.sampling import DEFAULT_CREASE_ANGLE, TriangleMesh, sample_mesh
+from splat_addon.sampling import DEFAULT_CREASE_ANGLE, TriangleMesh
+from tests.plain import sample_mesh
 from tests.rendering.creased import clipped_iron
 from tests.rendering.test_own_shadows import CAMERA as BESIDE_A_BALL
 from tests.rendering.test_own_shadows import LIGHTS, instance, uv_sphere

@@ -21,7 +21,8 @@ from splat_addon.rendering import (
     make_polygons,
 )
 from splat_addon.rendering.detail import levels
-from splat_addon.sampling import DEFAULT_CREASE_ANGLE, Tolerance, TriangleMesh, sample_surface
+from splat_addon.sampling import DEFAULT_CREASE_ANGLE, Tolerance, TriangleMesh
+from tests.plain import sample_surface
 
 CHALK = (Material(roughness=1.0, ior=1.0),)
 SETTINGS = Settings(outputs=("color",), detail_tolerance=0.0)

@@ -29,8 +29,9 @@ from splat_addon.rendering.detail.levels import LEAST_SURFELS, hierarchy_before,
 from splat_addon.rendering.methods import METHODS
 from splat_addon.rendering.plan import executor
 from splat_addon.rendering.upload.storages import STORAGES
-from splat_addon.sampling import TriangleMesh, sample_mesh
+from splat_addon.sampling import TriangleMesh
 from splat_addon.surfels import Surfels
+from tests.plain import sample_mesh
 
 from .creased import angle_iron, clipped_iron
 

@@ -12,7 +12,8 @@ from splat_addon.rendering import Camera, Instance, Lines, Renderer, Scene, Sett
 from splat_addon.rendering.methods import get_method
 from splat_addon.rendering.plan.executor import describe
 from splat_addon.rendering.plan.frame_plan import FILTER_MARGIN
-from splat_addon.sampling import TriangleMesh, sample_mesh
+from splat_addon.sampling import TriangleMesh
+from tests.plain import sample_mesh
 
 SIZE = (96, 64)
 #: 16 pixels a unit.

@@ -10,7 +10,8 @@ import trimesh
 
 from splat_addon.reference.polygons import nearest_hits
 from splat_addon.rendering import Camera, Instance, Light, Material, Scene, Settings, look_at
-from splat_addon.sampling import DEFAULT_CREASE_ANGLE, TriangleMesh, sample_mesh
+from splat_addon.sampling import DEFAULT_CREASE_ANGLE, TriangleMesh
+from tests.plain import sample_mesh
 
 SIZE = (112, 112)
 CAMERA = Camera.perspective(look_at((1.5, -4.2, 1.2), (0, 0, 0)), 0.62, SIZE, near=0.1, far=100)

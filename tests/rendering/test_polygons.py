@@ -26,7 +26,8 @@ from splat_addon.rendering import (
     make_polygons,
 )
 from splat_addon.rendering.methods import METHODS
-from splat_addon.sampling import TriangleMesh, sample_mesh
+from splat_addon.sampling import TriangleMesh
+from tests.plain import sample_mesh
 
 SIZE = (96, 96)
 SQUARE = np.array([(-1.0, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)])

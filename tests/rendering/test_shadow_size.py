@@ -27,7 +27,8 @@ from splat_addon.rendering import (
 )
 from splat_addon.rendering.shadows import receivers
 from splat_addon.rendering.shadows.maps import LEAST_SIDE, enough
-from splat_addon.sampling import TriangleMesh, sample_mesh
+from splat_addon.sampling import TriangleMesh
+from tests.plain import sample_mesh
 
 SETTINGS = Settings(outputs=("color",))
 SIZE = (96, 72)

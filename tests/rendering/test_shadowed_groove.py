@@ -5,7 +5,8 @@ import numpy as np
 import trimesh
 
 from splat_addon.rendering import Camera, Instance, Light, Material, Scene, Settings, look_at
-from splat_addon.sampling import DEFAULT_CREASE_ANGLE, TriangleMesh, sample_mesh
+from splat_addon.sampling import DEFAULT_CREASE_ANGLE, TriangleMesh
+from tests.plain import sample_mesh
 
 TEXELS = 128
 #: Of the map, which covers a plate of two units and a margin.

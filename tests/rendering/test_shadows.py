@@ -11,7 +11,8 @@ import trimesh
 from splat_addon.reference import render_exact
 from splat_addon.reference.extremes import discs
 from splat_addon.rendering import Camera, Instance, Light, Material, Renderer, Scene, Settings, look_at, plan
-from splat_addon.sampling import TriangleMesh, sample_mesh
+from splat_addon.sampling import TriangleMesh
+from tests.plain import sample_mesh
 
 SIZE = (56, 42)
 SETTINGS = Settings(method="quad", supersampling=1)

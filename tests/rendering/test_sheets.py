@@ -6,7 +6,8 @@ import pytest
 
 from splat_addon.reference.triangles import render_triangles
 from splat_addon.rendering import Camera, Scene, Settings, look_at
-from splat_addon.sampling import DEFAULT_CREASE_ANGLE, Channel, Surface, TriangleMesh, VertexColors, sample_mesh
+from splat_addon.sampling import DEFAULT_CREASE_ANGLE, Channel, Surface, TriangleMesh, VertexColors
+from tests.plain import sample_mesh
 
 ONE_SAMPLE = Settings(method="mip", shading="flat", transparent_film=True, supersampling=1, detail_tolerance=0)
 

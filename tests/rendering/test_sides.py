@@ -9,8 +9,9 @@ import pytest
 from splat_addon.reference import render_exact
 from splat_addon.reference.extremes import sheet
 from splat_addon.rendering import Camera, Instance, Light, Scene, Settings, look_at
-from splat_addon.sampling import TriangleMesh, sample_mesh
+from splat_addon.sampling import TriangleMesh
 from splat_addon.surfels import concatenate
+from tests.plain import sample_mesh
 
 CAMERA = Camera.perspective(look_at((0, 0, 0), (0, 0, -1), (0, 1, 0)), 0.6, (40, 40), 0.1, 100)
 FROM_BELOW = Light("sun", energy=3, direction=(0.2, 1, -0.3))

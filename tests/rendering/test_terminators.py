@@ -11,8 +11,9 @@ import trimesh
 
 from splat_addon.hierarchy import build_hierarchy
 from splat_addon.rendering import Camera, Instance, PolygonInstance, Scene, Settings, look_at, make_polygons
-from splat_addon.sampling import DEFAULT_CREASE_ANGLE, TriangleMesh, sample_mesh
+from splat_addon.sampling import DEFAULT_CREASE_ANGLE, TriangleMesh
 from splat_addon.sampling.attributes.lifts import lifts
+from tests.plain import sample_mesh
 from tests.rendering.test_own_shadows import CHALK, LIGHTS, SIZE, uv_sphere
 
 #: Lights at the side, so that the terminator is in the middle of the picture.

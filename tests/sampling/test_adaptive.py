@@ -7,7 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from splat_addon.reference.bare import uncovered_points
-from splat_addon.sampling import Channel, Surface, Tolerance, TriangleMesh, VertexColors, grid_spacing, sample_surface
+from splat_addon.sampling import Channel, Surface, Tolerance, TriangleMesh, VertexColors, grid_spacing
+from tests.plain import sample_surface
 
 
 def adaptive(mesh, resolution, cells=0.1, **limits):

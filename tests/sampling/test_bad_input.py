@@ -4,14 +4,8 @@
 import numpy as np
 import pytest
 
-from splat_addon.sampling import (
-    SamplingCancelled,
-    TriangleMesh,
-    drop_unusable,
-    grid_spacing,
-    predict_count,
-    sample_mesh,
-)
+from splat_addon.sampling import SamplingCancelled, TriangleMesh, drop_unusable, grid_spacing, predict_count
+from tests.plain import sample_mesh
 
 EMPTY = TriangleMesh(np.zeros((0, 3)), np.zeros((0, 3), int))
 

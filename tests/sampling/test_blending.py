@@ -3,8 +3,9 @@
 
 import numpy as np
 
-from splat_addon.sampling import Tolerance, sample_mesh, sample_surface
+from splat_addon.sampling import Tolerance
 from splat_addon.sampling.attributes.blend_depths import LEAST_BLENDING
+from tests.plain import sample_mesh, sample_surface
 
 
 def test_flat_surfaces_hardly_blend_although_they_have_creases(cube):

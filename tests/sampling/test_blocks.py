@@ -16,13 +16,11 @@ from splat_addon.sampling import (
     Texture,
     Tolerance,
     TriangleMesh,
-    joined_blocks,
     read_block,
     read_request,
-    sample_block,
-    sample_surface,
     write_blocks,
 )
+from tests.plain import joined_blocks, sample_block, sample_surface
 
 
 @pytest.fixture(scope="module")

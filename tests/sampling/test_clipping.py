@@ -8,17 +8,15 @@ import trimesh
 from splat_addon.clip_lines import kept
 from splat_addon.sampling import (
     Channel,
-    DeformingSurfels,
     SamplingCancelled,
     Surface,
     Tolerance,
     TriangleMesh,
     VertexColors,
-    sample_mesh,
-    sample_surface,
 )
 from splat_addon.sampling.edges.borders import survey_edges
 from splat_addon.sampling.edges.overhang import SMALLER, TIMES
+from tests.plain import deforming_surfels, sample_mesh, sample_surface
 
 ANGLE = np.radians(30)
 DISC = np.array([(r * np.cos(t), r * np.sin(t)) for r in (0.3, 0.7, 0.999) for t in np.arange(24) * np.pi / 12])
@@ -295,7 +293,7 @@ def test_merged_surfels_leave_the_lines_of_others(cube):
 
 
 def test_lines_go_with_a_mesh_that_deforms(cube):
-    deforming = DeformingSurfels(cube(), resolution=9, crease_angle=ANGLE)
+    deforming = deforming_surfels(cube(), resolution=9, crease_angle=ANGLE)
     move = np.array([(1.2, 0.5, 0), (0, 0.8, 0.3), (0.1, 0, 1)])
     surfels, _ = deforming.at(TriangleMesh(cube().positions @ move.T, cube().triangles))
     inside = shown(surfels)[0] @ np.linalg.inv(move).T
@@ -305,7 +303,7 @@ def test_lines_go_with_a_mesh_that_deforms(cube):
 def test_surfels_that_fill_gaps_follow_a_mesh_too():
     strip = TriangleMesh(np.array([(0, 0, 0), (1, 0, 0), (1, 0.004, 0), (0, 0.004, 0.0)]) + 0.0013,
                          np.array([(0, 1, 2), (0, 2, 3)]))  # fmt: skip
-    deforming = DeformingSurfels(strip, spacing=0.05, crease_angle=ANGLE)
+    deforming = deforming_surfels(strip, spacing=0.05, crease_angle=ANGLE)
     assert len(deforming.sampling.gap_triangles)
     surfels, _ = deforming.at(TriangleMesh(strip.positions + np.array([0, 0, 2]), strip.triangles))
     assert np.allclose(surfels.positions[:, 2] + surfels.origin[2], 2.0013)

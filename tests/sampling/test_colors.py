@@ -4,7 +4,8 @@
 import numpy as np
 import pytest
 
-from splat_addon.sampling import Channel, Image, Surface, Texture, VertexColors, sample_mesh
+from splat_addon.sampling import Channel, Image, Surface, Texture, VertexColors
+from tests.plain import sample_mesh
 
 #: The square's corners as its triangles use them: texture coordinates equal x, y.
 UVS = np.array([[(0, 0), (1, 0), (1, 1)], [(0, 0), (1, 1), (0, 1)]], float)

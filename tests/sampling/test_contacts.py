@@ -7,11 +7,12 @@ import trimesh
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from splat_addon.sampling import DEFAULT_CREASE_ANGLE, Tolerance, TriangleMesh, sample_mesh
+from splat_addon.sampling import DEFAULT_CREASE_ANGLE, Tolerance, TriangleMesh
 from splat_addon.sampling.edges import places_on_triangles as places_module
 from splat_addon.sampling.edges.borders import survey_edges
 from splat_addon.sampling.edges.contacts import find_contacts
 from splat_addon.sampling.edges.places_on_triangles import places_on_triangles
+from tests.plain import sample_mesh
 
 SPACING = 0.02
 TURN = trimesh.transformations.euler_matrix(0.4, 0.7, 0.2)[:3, :3]

@@ -11,8 +11,9 @@ import trimesh
 from trimesh.transformations import rotation_matrix
 
 from splat_addon.reference.bare import uncovered_points
-from splat_addon.sampling import STRETCHED_SHARE, Channel, DeformingSurfels, Surface, TriangleMesh, VertexColors
+from splat_addon.sampling import STRETCHED_SHARE, Channel, Surface, TriangleMesh, VertexColors
 from splat_addon.sampling.deform.binding import LARGEST_STRETCH
+from tests.plain import deforming_surfels
 
 TURN = rotation_matrix(1.1, (1, 2, 3))[:3, :3]
 
@@ -30,7 +31,7 @@ def bar():
 
 @pytest.fixture(scope="module")
 def deforming(bar):
-    made = DeformingSurfels(bar, spacing=0.05)
+    made = deforming_surfels(bar, spacing=0.05)
     assert made.sampling.small_parts == 1
     return made
 
@@ -143,7 +144,7 @@ def test_a_part_that_grows_from_nothing_is_said(bar):
     """The part had no area when it was sampled, so it has no surfels."""
     top = bar.positions[:, 2] > 0.5
     collapsed = replace(bar, positions=np.where(top[:, None], (0, 0, 2), bar.positions))
-    deforming = DeformingSurfels(collapsed, spacing=0.05)
+    deforming = deforming_surfels(collapsed, spacing=0.05)
     surfels, stretched = deforming.at(bar)
     assert len(surfels) == len(deforming.sampling.surfels)
     assert stretched > 0.1
@@ -166,7 +167,7 @@ def test_other_triangles_are_refused(bar, deforming):
 def test_colours_that_change_are_sampled_at_the_same_places(bar):
     painted = Surface(Channel((1, 1, 1, 1), VertexColors()))
     colors = np.random.default_rng(1).uniform(size=(len(bar), 3, 4))
-    deforming = DeformingSurfels(replace(bar, corner_colors=colors, surfaces=(painted,)), spacing=0.1)
+    deforming = deforming_surfels(replace(bar, corner_colors=colors, surfaces=(painted,)), spacing=0.1)
     before, bent_before = deforming.sampling.surfels, deforming.at(replace(moved(bar, bend), corner_colors=colors))[0]
     darker = replace(moved(bar, bend), corner_colors=colors / 2, surfaces=(painted,))
     after, _ = deforming.at(darker)
@@ -176,14 +177,14 @@ def test_colours_that_change_are_sampled_at_the_same_places(bar):
 
 def test_a_solid_that_is_turned_inside_out_is_none_any_more(bar):
     ball = replace(bar, triangles=bar.triangles[:-1], corner_normals=None)
-    deforming = DeformingSurfels(ball, spacing=0.1)
+    deforming = deforming_surfels(ball, spacing=0.1)
     assert deforming.at(ball)[0].is_solid
     assert not deforming.at(replace(ball, positions=ball.positions * (1, 1, -1)))[0].is_solid
 
 
 def test_texture_coordinates_keep_their_direction_on_the_surface(bar):
     """On the bar u = x and v = z; after shearing, u and v still change along the axes as x and z did before."""
-    deforming = DeformingSurfels(bar, spacing=0.1)
+    deforming = deforming_surfels(bar, spacing=0.1)
     rest = deforming.sampling.surfels
     u, v = rest.half_axes()
     deforming.sampling = replace(

@@ -13,11 +13,11 @@ from splat_addon.sampling import (
     VertexColors,
     edge_samples,
     joined_at_edges,
-    sample_mesh,
     transition_edges,
 )
 from splat_addon.sampling.edges.edge_samples import SAME_SIDE, TOO_CLOSE, too_close
 from splat_addon.surfels import Surfels, concatenate
+from tests.plain import sample_mesh
 
 #: Two squares that meet along x = 0 in a roof, each of two triangles.
 ROOF = np.array([(-1.0, 0, -1), (0, 0, 0), (0, 2, 0), (-1, 2, -1), (1, 0, -1), (1, 2, -1)])

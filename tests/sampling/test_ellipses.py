@@ -8,8 +8,9 @@ from hypothesis import strategies as st
 
 from splat_addon.quaternions import quaternion_axes
 from splat_addon.reference.bare import uncovered_points
-from splat_addon.sampling import grid_spacing, sample_mesh
+from splat_addon.sampling import grid_spacing
 from splat_addon.sampling.attributes.ellipses import ellipse_rotations, ellipse_scales
+from tests.plain import sample_mesh
 
 
 @settings(deadline=None)

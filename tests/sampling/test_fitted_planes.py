@@ -6,7 +6,8 @@ import pytest
 
 from splat_addon.clip_lines import CLIP_FIELDS
 from splat_addon.reference.bare import uncovered_points
-from splat_addon.sampling import DeformingSurfels, Tolerance, TriangleMesh, sample_mesh, sample_surface
+from splat_addon.sampling import Tolerance, TriangleMesh
+from tests.plain import deforming_surfels, sample_mesh, sample_surface
 
 EDGES = {"crease_angle": np.radians(20), "fits_blending": True}
 FITTED = EDGES | {"fits_planes": True}
@@ -151,7 +152,7 @@ def test_merged_samples_were_fitted_before(sphere):
 
 
 def test_fitted_splats_follow_a_mesh_that_deforms(sphere):
-    deforming = DeformingSurfels(sphere, resolution=12, **FITTED)
+    deforming = deforming_surfels(sphere, resolution=12, **FITTED)
     rest, moved = sample_mesh(sphere, resolution=12, **FITTED), np.array((5.0, 0, 0))
     surfels, _ = deforming.at(TriangleMesh(sphere.positions + moved, sphere.triangles, sphere.corner_normals))
     assert np.allclose(surfels.positions + surfels.origin - moved, rest.positions + rest.origin, atol=1e-5)

@@ -10,16 +10,8 @@ from hypothesis import strategies as st
 
 from splat_addon.images import Image
 from splat_addon.reference.bare import uncovered_points
-from splat_addon.sampling import (
-    Channel,
-    Surface,
-    Texture,
-    Tolerance,
-    TriangleMesh,
-    VertexColors,
-    grid_spacing,
-    sample_surface,
-)
+from splat_addon.sampling import Channel, Surface, Texture, Tolerance, TriangleMesh, VertexColors, grid_spacing
+from tests.plain import sample_surface
 
 OPTIONS = {"tolerance": Tolerance(0.0), "crease_angle": 0.35, "fits_blending": True, "fits_planes": True}
 

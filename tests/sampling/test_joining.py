@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 import trimesh
 
-from splat_addon.sampling import Channel, Surface, TriangleMesh, is_solid, joined, sample_mesh, transformed
+from splat_addon.sampling import Channel, Surface, TriangleMesh, is_solid, joined, transformed
+from tests.plain import sample_mesh
 
 
 def mesh_of(solid: trimesh.Trimesh, **fields) -> TriangleMesh:

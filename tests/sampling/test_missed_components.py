@@ -6,8 +6,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from splat_addon.sampling import Channel, Surface, Texture, TriangleMesh, VertexColors, sample_surface
+from splat_addon.sampling import Channel, Surface, Texture, TriangleMesh, VertexColors
 from splat_addon.sampling.mesh.connectivity import part_labels
+from tests.plain import sample_surface
 
 #: With this spacing all rays miss a small part near the origin, because they are at odd multiples of half of it.
 SPACING = 1.0

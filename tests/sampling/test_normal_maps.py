@@ -4,8 +4,9 @@
 import numpy as np
 import pytest
 
-from splat_addon.sampling import Channel, Image, NormalMap, Surface, Texture, TriangleMesh, sample_mesh
+from splat_addon.sampling import Channel, Image, NormalMap, Surface, Texture, TriangleMesh
 from splat_addon.sampling.attributes.tangents import corner_tangents
+from tests.plain import sample_mesh
 
 UVS = np.array([[(0, 0), (1, 0), (1, 1)], [(0, 0), (1, 1), (0, 1)]], float)
 TILTED = np.array((0.6, 0.0, 0.8))

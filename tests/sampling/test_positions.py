@@ -4,10 +4,11 @@
 import numpy as np
 import pytest
 
-from splat_addon.sampling import Channel, Surface, TriangleMesh, VertexColors, sample_mesh
+from splat_addon.sampling import Channel, Surface, TriangleMesh, VertexColors
 from splat_addon.sampling import sample as sample_module
 from splat_addon.sampling.ldc import scan_conversion
 from splat_addon.sampling.mesh import triangle_mesh as mesh_module
+from tests.plain import sample_mesh
 
 
 def test_surfels_lie_on_the_faceted_sphere(sphere):

@@ -10,20 +10,11 @@ from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
 from splat_addon.reference.bare import uncovered_points
-from splat_addon.sampling import (
-    REDUCTIONS,
-    Channel,
-    Surface,
-    TriangleMesh,
-    VertexColors,
-    drop_unusable,
-    grid_spacing,
-    sample_mesh,
-    sample_surface,
-)
+from splat_addon.sampling import REDUCTIONS, Channel, Surface, TriangleMesh, VertexColors, drop_unusable, grid_spacing
 from splat_addon.sampling import sample as sample_module
 from splat_addon.sampling.ldc import scan_conversion
 from splat_addon.sampling.mesh import triangle_mesh as mesh_module
+from tests.plain import sample_mesh, sample_surface
 from tests.sampling.distances import distances
 
 RESOLUTION = 64

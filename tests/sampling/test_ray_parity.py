@@ -6,7 +6,8 @@ caster.
 import numpy as np
 import pytest
 
-from splat_addon.sampling import TriangleMesh, sample_mesh
+from splat_addon.sampling import TriangleMesh
+from tests.plain import sample_mesh
 
 
 @pytest.mark.parametrize("scale, offset", [(1, 0), (1e-6, 0), (1e6, 0), (1, 1e7)])

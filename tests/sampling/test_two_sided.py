@@ -17,10 +17,8 @@ from splat_addon.sampling import (
     drop_unusable,
     grid_spacing,
     is_solid,
-    joined_blocks,
-    sample_block,
-    sample_surface,
 )
+from tests.plain import joined_blocks, sample_block, sample_surface
 
 OPTIONS = {
     "crease_angle": DEFAULT_CREASE_ANGLE,

@@ -20,7 +20,7 @@ import splat_addon
 from bench.conversion.rivals import RIVALS, SLOW
 from measuring.models import load, load_any, short
 from measuring.timing import Spread, Turns, both, in_turn, peak_bytes, processor
-from splat_addon.sampling import TriangleMesh, drop_unusable, sample_mesh, surfels_from_points
+from splat_addon.sampling import PLAIN, TriangleMesh, drop_unusable, sample_mesh, surfels_from_points
 from splat_addon.surfels import LAYOUT
 
 #: The cost model: seconds per triangle, seconds per surfel.
@@ -91,7 +91,7 @@ def ours(mesh: TriangleMesh, resolution: int) -> dict:
     def cleaning():
         clean["mesh"], _ = drop_unusable(replace(mesh))  # a new mesh, because a mesh caches what was computed about it
 
-    return {"cleaning": cleaning, "sampling": lambda: len(sample_mesh(clean["mesh"], resolution=resolution))}
+    return {"cleaning": cleaning, "sampling": lambda: len(sample_mesh(clean["mesh"], resolution=resolution, **PLAIN))}
 
 
 def cells(taken: Turns, triangles: int) -> list[str]:
@@ -119,12 +119,12 @@ def ratios(taken: Turns, other: str, preparation: float) -> list[str]:
 def extra_bytes(mesh: TriangleMesh, resolution: int) -> float:
     """Peak bytes per surfel while sampling, above the cleaned mesh and the result."""
     mesh, _ = drop_unusable(mesh)
-    peak, surfels = peak_bytes(lambda: sample_mesh(mesh, resolution=resolution))
+    peak, surfels = peak_bytes(lambda: sample_mesh(mesh, resolution=resolution, **PLAIN))
     return peak / len(surfels) - SURFEL_BYTES
 
 
 def prepared_rivals(mesh: TriangleMesh, resolution: int) -> dict:
     """name -> function that samples the same mesh and returns its number of samples; only installed alternatives."""
     usable, _ = drop_unusable(mesh)
-    count = len(sample_mesh(usable, resolution=resolution))
+    count = len(sample_mesh(usable, resolution=resolution, **PLAIN))
     return {name: job for name, prepare in RIVALS.items() if (job := prepare(usable, resolution, count)) is not None}

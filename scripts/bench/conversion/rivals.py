@@ -16,7 +16,7 @@ import numpy as np
 import trimesh
 
 from measuring.timing import processor
-from splat_addon.sampling import grid_spacing, sample_mesh
+from splat_addon.sampling import PLAIN, grid_spacing, sample_mesh
 
 #: With more samples than this, trimesh's thinning is skipped.
 FEW = 500_000
@@ -88,7 +88,7 @@ def hitting_rays(mesh, resolution) -> np.ndarray:
     """(n, 6) float32 origins and directions of the rays in our three grids that hit the mesh."""
     spacing = grid_spacing(mesh, resolution=resolution)
     low = mesh.bounds()[0]
-    surfels = sample_mesh(mesh, spacing=spacing, reduction="none")
+    surfels = sample_mesh(mesh, spacing=spacing, reduction="none", **PLAIN)
     cells = (surfels.origin - low + surfels.positions) / spacing
     rays = []
     for axis in range(3):

@@ -39,7 +39,7 @@ from splat_addon.reference.metrics import mean_flip, psnr
 from splat_addon.rendering import Renderer, Settings, open_device, renderer
 from splat_addon.rendering.detail.levels import hierarchy_of
 from splat_addon.rendering.plan import executor
-from splat_addon.sampling import sample_mesh
+from splat_addon.sampling import PLAIN, sample_mesh
 
 DEVICES = ("standalone",)
 QUICK = {"size": 64, "resolutions": [60], "model": "bunny.obj.gz", "dolly": 3}
@@ -73,7 +73,7 @@ def run(options, report) -> None:
 
     def rows():
         for resolution in options.resolutions:
-            surfels = sample_mesh(mesh, resolution=resolution)
+            surfels = sample_mesh(mesh, resolution=resolution, **PLAIN)
             started = perf_counter()
             levels = hierarchy_of(surfels)
             seconds, own = perf_counter() - started, sum(a.nbytes for a in surfels.arrays().values())
@@ -88,7 +88,7 @@ def run(options, report) -> None:
         report.table(ON_DEVICE, on_device, "What the graphics card itself spends, by its timer queries.")
     report.plot("times", plot_times(times))
     if options.dolly > 1:
-        pops = dolly(Renderer(device), sample_mesh(mesh, resolution=options.resolutions[0]), options)
+        pops = dolly(Renderer(device), sample_mesh(mesh, resolution=options.resolutions[0], **PLAIN), options)
         report.say(
             f"{options.dolly} pictures of the dolly: pop {np.mean(pops):.4f} on average, {max(pops):.4f} at most."
         )

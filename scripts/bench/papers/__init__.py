@@ -16,7 +16,7 @@ from measuring.drawing import draw_in_turn
 from measuring.models import in_view, load, short
 from splat_addon.rendering import Renderer, Settings, open_device
 from splat_addon.rendering.methods import METHODS
-from splat_addon.sampling import sample_mesh
+from splat_addon.sampling import PLAIN, sample_mesh
 
 DEVICES = ("standalone",)
 QUICK = {"resolutions": [64], "size": 64}
@@ -109,7 +109,7 @@ def _tables(renderer: Renderer, options, report) -> None:
 @lru_cache(maxsize=None)
 def _scene(path, resolution: int, size: int):
     """The model before the camera; its lights cast shadows in the settings that have any."""
-    scene, camera = in_view(sample_mesh(load(path), resolution=resolution), size)
+    scene, camera = in_view(sample_mesh(load(path), resolution=resolution, **PLAIN), size)
     return replace(scene, lights=tuple(replace(light, casts_shadow=True) for light in scene.lights)), camera
 
 

@@ -27,7 +27,7 @@ from splat_addon.rendering.device.interface import FORMATS
 from splat_addon.rendering.device.standalone import _STORED
 from splat_addon.rendering.features import gbuffer
 from splat_addon.rendering.plan.frame_plan import FramePlan
-from splat_addon.sampling import TriangleMesh, joined_at_edges, sample_mesh
+from splat_addon.sampling import PLAIN, TriangleMesh, joined_at_edges, sample_mesh
 
 FLAT = Settings(supersampling=1, shading="flat", outputs=("color",), detail_tolerance=0.0)
 LIT = replace(FLAT, shading="phong", shadow_resolution=0)
@@ -128,7 +128,7 @@ def _view_independent(draw: Draw, size: int):
 
 @cache
 def _surfels(path: Path, resolution: int):
-    return sample_mesh(load(path), resolution=resolution)
+    return sample_mesh(load(path), resolution=resolution, **PLAIN)
 
 
 def contour(method: str, wide: float, high: float, pixels: int = 5, places: int = 128) -> np.ndarray:
@@ -181,7 +181,7 @@ def half_polygons(size: int, has_edge_samples: bool):
     middle = ball.vertices[ball.faces][:, :, 0].mean(axis=1)
     halves = (ball.faces[middle > 0], ball.faces[middle <= 0])
     near, far = (TriangleMesh(ball.vertices, half, corner_normals=ball.vertices[half]) for half in halves)
-    splats = sample_mesh(far, spacing=SPACING)
+    splats = sample_mesh(far, spacing=SPACING, **PLAIN)
     if has_edge_samples:
         splats = joined_at_edges(splats, near, far, SPACING)
     polygons = make_polygons(near.positions, near.triangles, near.corner_normals, (1.0, 1.0, 1.0, 1.0))

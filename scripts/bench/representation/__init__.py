@@ -27,7 +27,7 @@ from measuring.timing import Spread, both, in_turn, processor
 from splat_addon.reference import render_exact
 from splat_addon.reference.triangles import render_triangles
 from splat_addon.rendering import PolygonInstance, Renderer, Scene, Settings, make_polygons, open_device
-from splat_addon.sampling import DEFAULT_CREASE_ANGLE, Tolerance, camera_spacing, is_solid, outline, sample_surface
+from splat_addon.sampling import DEFAULT_CREASE_ANGLE, FLAT, PLAIN, camera_spacing, is_solid, outline, sample_surface
 
 DEVICES = ("standalone",)
 QUICK = {"size": 48, "resolution": [24], "model": ["plate"], "views": 1, "exact": 2}
@@ -36,13 +36,13 @@ SETTINGS = Settings(shading="flat", transparent_film=True)
 
 #: name -> options of `sample_surface`
 KINDS = {
-    "now": {},
-    "clip": {"crease_angle": DEFAULT_CREASE_ANGLE},
-    "blend": {"fits_blending": True},
-    "both": {"crease_angle": DEFAULT_CREASE_ANGLE, "fits_blending": True},
-    "fit": {"crease_angle": DEFAULT_CREASE_ANGLE, "fits_blending": True, "fits_planes": True},
+    "now": PLAIN,
+    "clip": PLAIN | {"crease_angle": DEFAULT_CREASE_ANGLE, "fits_blending": False},
+    "blend": PLAIN | {"fits_blending": True, "fits_planes": False},
+    "both": PLAIN | {"crease_angle": DEFAULT_CREASE_ANGLE, "fits_planes": False},
+    "fit": PLAIN | {"crease_angle": DEFAULT_CREASE_ANGLE},
+    "flat": PLAIN | {"crease_angle": DEFAULT_CREASE_ANGLE, "tolerance": FLAT},
 }
-KINDS["flat"] = KINDS["fit"] | {"tolerance": Tolerance(0.0)}
 COLUMNS = "model resolution view picture PSNR FLIP FLIP_99_% largest_blob wrong bare spilled".replace("_", " ").split()
 
 

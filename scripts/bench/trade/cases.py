@@ -17,7 +17,7 @@ import numpy as np
 from measuring.models import in_view, load
 from splat_addon.reference import scenes
 from splat_addon.rendering import Camera, Scene
-from splat_addon.sampling import sample_mesh
+from splat_addon.sampling import PLAIN, sample_mesh
 
 FULL = 256
 
@@ -81,7 +81,7 @@ def _sphere(count: int):
 @lru_cache(maxsize=1)
 def _armadillo_surfels(view: View):
     """The armadillo as surfels, with bands of two colours through its body."""
-    surfels = sample_mesh(load(view.models / "armadillo.obj.gz"), resolution=view.along(256))
+    surfels = sample_mesh(load(view.models / "armadillo.obj.gz"), resolution=view.along(256), **PLAIN)
     low, high = surfels.local_bounds
     fields = np.floor((surfels.positions - low) / (high - low).max() * view.along(24)).sum(axis=1) % 2
     return replace(surfels, colors=np.where(fields[:, None] > 0, (0.8, 0.3, 0.15, 1), (0.75, 0.75, 0.7, 1)))

@@ -15,12 +15,11 @@ import bpy
 from mathutils import Matrix
 
 from ...sampling import (
-    DEFAULT_GRAZING_ANGLE,
-    DEFAULT_SPLAT_SIZE,
     NO_FLAT_EXTENTS,
     REDUCTIONS,
     FlatExtents,
     Sampling,
+    SamplingOptions,
     Tolerance,
     TriangleMesh,
     drop_unusable,
@@ -77,12 +76,12 @@ class Choices:
     """
 
     density: dict[str, float]
-    splat_size: float = DEFAULT_SPLAT_SIZE
-    reduction: str = "normal"
-    grazing_angle: float = DEFAULT_GRAZING_ANGLE
-    tolerance: float | None = None
-    texture_mapped: bool = False
-    crease_angle: float | None = None
+    splat_size: float = SamplingOptions.splat_size
+    reduction: str = SamplingOptions.reduction
+    grazing_angle: float = SamplingOptions.grazing_angle
+    tolerance: float | None = SamplingOptions.tolerance.distance
+    texture_mapped: bool = SamplingOptions.texture_mapped
+    crease_angle: float | None = SamplingOptions.crease_angle
     space: str = "object"
     join: bool = False
     bake: bool = False
@@ -274,9 +273,6 @@ def sampling_options(conversion: Conversion) -> dict:
         "deforms": conversion.deforms,
         "texture_mapped": choices.texture_mapped,
         "crease_angle": choices.crease_angle,
-        "fits_blending": choices.crease_angle is not None,
-        "fits_planes": choices.crease_angle is not None,
-        "lifts": True,
     }
 
 

@@ -8,7 +8,7 @@ import math
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
-from ...sampling import DEFAULT_CREASE_ANGLE, DEFAULT_GRAZING_ANGLE, LEAST_GRAZING_ANGLE, REDUCTIONS
+from ...sampling import LEAST_GRAZING_ANGLE, REDUCTIONS, SamplingOptions
 from ..density_properties import (
     DENSITIES,
     pixels_property,
@@ -79,7 +79,7 @@ class ConversionProperties:
         name="Reduction",
         description="The surface is sampled along three axes; this chooses which of these samples become surfels",
         items=[(name.upper(), reduction.label, reduction.description) for name, reduction in REDUCTIONS.items()],
-        default="NORMAL",
+        default=SamplingOptions.reduction.upper(),
     )
     grazing_angle: FloatProperty(
         name="Grazing Angle",
@@ -88,7 +88,7 @@ class ConversionProperties:
             "90 degrees keeps all samples"
         ),
         subtype="ANGLE",
-        default=DEFAULT_GRAZING_ANGLE,
+        default=SamplingOptions.grazing_angle,
         min=LEAST_GRAZING_ANGLE,
         max=math.pi / 2,
     )
@@ -98,7 +98,7 @@ class ConversionProperties:
             "Use larger surfels inside faces that are flat and look the same everywhere, as those of buildings and"
             " machines. Turn it off to paint or sculpt surfels"
         ),
-        default=True,
+        default=SamplingOptions.tolerance is not None,
     )
     tolerance: FloatProperty(
         name="Tolerance",
@@ -106,7 +106,7 @@ class ConversionProperties:
             "How far a larger surfel may be from the surface that it covers, in the units of the chosen space. Above 0,"
             " surfels also become larger across nearly flat faces, but conversion takes longer"
         ),
-        default=0.0,
+        default=SamplingOptions.tolerance.distance,
         min=0.0,
         soft_max=1.0,
         precision=5,
@@ -128,7 +128,7 @@ class ConversionProperties:
             "larger than their surface needs. Edges stay sharp, but conversion takes longer, and frames take slightly "
             "longer"
         ),
-        default=True,
+        default=SamplingOptions.crease_angle is not None,
     )
     crease_angle: FloatProperty(
         name="Crease Angle",
@@ -137,7 +137,7 @@ class ConversionProperties:
             "larger than a surfel a smaller angle is enough, down to a sixth of this one"
         ),
         subtype="ANGLE",
-        default=DEFAULT_CREASE_ANGLE,
+        default=SamplingOptions.crease_angle,
         min=math.radians(1),
         max=math.pi,
     )

@@ -21,7 +21,6 @@ import numpy as np
 from ...rendering import Instance, Material, NormalTexture, PolygonInstance, Polygons, SurfaceTexture
 from ...rendering.detail.levels import replaced
 from ...sampling import (
-    DEFAULT_CREASE_ANGLE,
     STRETCHED_SHARE,
     DeformingSurfels,
     NotSeenError,
@@ -312,9 +311,10 @@ def _deforming(
     """A mesh sampled as the operator does. ends_at_edges: False for a part of a mesh whose border continues as
     polygons. bends: whether planes that fit the mesh now will not fit it later.
     """
-    edges = {"crease_angle": DEFAULT_CREASE_ANGLE, "fits_blending": True, "fits_planes": not bends}
-    how = {"texture_mapped": texture_mapped, "lifts": True, "deforms": bends} | (edges if ends_at_edges else {})
-    return DeformingSurfels(mesh, spacing=spacing, **how)
+    edges = {} if ends_at_edges else {"crease_angle": None}
+    if bends:
+        edges["fits_planes"] = False
+    return DeformingSurfels(mesh, spacing=spacing, texture_mapped=texture_mapped, deforms=bends, **edges)
 
 
 def _stretch(matrix: np.ndarray) -> float:

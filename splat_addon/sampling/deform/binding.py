@@ -14,6 +14,7 @@ from ...quaternions import axes_quaternions
 from ...surfels import Surfels
 from ..mesh.cleaning import usable_triangles
 from ..mesh.triangle_mesh import TriangleMesh, doubled_areas, gather_corners, triangle_chunks
+from ..options import PLAIN
 from ..sample import Sampling, sample_surface
 
 #: Surfels whose longer axis has grown beyond this factor show less detail than requested.
@@ -45,7 +46,7 @@ class Binding:
         named = TriangleMesh(mesh.positions, mesh.triangles[kept], materials=kept.astype(np.int32))
         later = "crease_angle", "fits_blending", "fits_planes", "lifts"
         alike = {name: value for name, value in options.items() if name not in later}
-        triangles = sample_surface(named, **alike).surfels.materials
+        triangles = sample_surface(named, **(PLAIN | alike)).surfels.materials
         before = len(triangles) - sampling.small_parts
         triangles = np.concatenate([triangles[:before], sampling.gap_triangles, triangles[before:]])
         is_new = np.ones(len(triangles) + 1, bool)

@@ -25,12 +25,13 @@ STRETCHED_SHARE = 0.01
 class DeformingSurfels:
     """The surfels of one sampling, and their current positions.
 
-    mesh: the mesh as sampled. options: those of `sample_surface`. `mesh` and `sampling` hold the current state.
+    mesh: the mesh as sampled. options: those of `sample_surface`; without a tolerance, all surfels have the same size.
+        `mesh` and `sampling` hold the current state.
     """
 
     def __init__(self, mesh: TriangleMesh, **options):
-        self.mesh, self._options = mesh, options
-        self.sampling = sample_surface(mesh, **options)
+        self.mesh, self._options = mesh, {"tolerance": None} | options
+        self.sampling = sample_surface(mesh, **self._options)
         self._shape = SolidShape(mesh) if self.sampling.keeps_both_sides else None
         self._surfels = self._as_solid_as(mesh, self.sampling.surfels)
         self._last = mesh, (self._surfels, 0.0)

@@ -11,7 +11,8 @@ from mathutils import Vector
 from splat_addon.blender.geometry.attributes import write_surfels
 from splat_addon.blender.properties import final_settings, viewport_settings
 from splat_addon.reference.metrics import psnr
-from splat_addon.sampling import TriangleMesh, sample_mesh
+from splat_addon.sampling import TriangleMesh
+from tests.plain import sample_mesh
 
 WHITE = (0.8, 0.8, 0.8, 1.0)
 

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from splat_addon.blender.geometry.attributes import write_surfels
-from splat_addon.sampling import TriangleMesh, sample_mesh
+from splat_addon.sampling import TriangleMesh
+from tests.plain import sample_mesh
 
 #: name: type, energy, location, rotation, properties
 LIGHTS = {
