@@ -70,7 +70,7 @@ def changes_inside(source: bpy.types.Object) -> str | None:
 
 def _may_change(owner: bpy.types.Object) -> bool:
     shapes = owner.data, getattr(owner.data, "shape_keys", None)
-    helpers = (helper for modifier in owner.modifiers for helper in _used_by(modifier))
+    helpers = (helper for modifier in owner.modifiers for helper in used_by(modifier))
     if is_moving(owner) or any(map(is_animated, (*shapes, *helpers))):
         return True
     return bool(rebuilt_by(owner)) or any(modifier.type in _PASSING for modifier in owner.modifiers)
@@ -116,16 +116,16 @@ def _changes(modifier: bpy.types.Modifier, source: bpy.types.Object) -> bool:
     settings = f'modifiers["{bpy.utils.escape_identifier(modifier.name)}"]'
     if any(path.startswith(settings) for path in animated_paths(source)):
         return True
-    return modifier.show_render and any(_changes_for(used, source) for used in _used_by(modifier))
+    return modifier.show_render and any(_changes_for(used, source) for used in used_by(modifier))
 
 
 def _changes_for(used: bpy.types.Object, source: bpy.types.Object) -> bool:
     shapes = used.data, getattr(used.data, "shape_keys", None)
-    helpers = (helper for modifier in used.modifiers for helper in _used_by(modifier))
+    helpers = (helper for modifier in used.modifiers for helper in used_by(modifier))
     return moves_against(used, source) or any(map(is_animated, (*shapes, *helpers)))
 
 
-def _used_by(modifier: bpy.types.Modifier) -> Iterator[bpy.types.Object]:
+def used_by(modifier: bpy.types.Modifier) -> Iterator[bpy.types.Object]:
     """The objects that a modifier refers to, alone or in a collection."""
     for each in modifier.bl_rna.properties:
         used = getattr(modifier, each.identifier) if each.type == "POINTER" else None

@@ -20,9 +20,11 @@ from ..geometry.node_groups import input_of, known_group, new_modifier_group, us
 from ..geometry.node_maths import Maths, Socket, enabled
 from ..geometry.reading import read_values
 from ..ids import POINT_ATTRIBUTES, REST, SHAPE_GROUP
+from .animation import moves_against
 from .changing_shape import changes_in_time, changes_inside, is_deformed, rebuilt_by
 from .following import follows
 from .source_record import record_of, sources_of
+from .source_shape import faces_of
 
 _VERTICES = ("surfel_vertex_a", "surfel_vertex_b", "surfel_vertex_c")
 _CORNERS = ("surfel_corner_a", "surfel_corner_b", "surfel_corner_c")
@@ -55,11 +57,12 @@ def follow_shape(made: bpy.types.Object, conversion, depsgraph: bpy.types.Depsgr
     [source, *others] = conversion.sources
     _unbind(made)
     if others:
-        return None
+        changing = next((each for each in conversion.sources if _changes_beside(each, source)), None)
+        return changing and f"they are joined with those of {changing.name!r}, which may move or change; {INSTEAD}"
     if why := _why_never(source):
         return why
     if name := changes_inside(source):
-        return f"{name!r} in its collection may move or change its shape; {_INSTEAD}"
+        return f"{name!r} in its collection may move or change its shape; {INSTEAD}"
     if not is_deformed(source):
         return None
     surfels, mesh = conversion.surfels, conversion.mesh
@@ -75,17 +78,24 @@ def follow_shape(made: bpy.types.Object, conversion, depsgraph: bpy.types.Depsgr
     turns = not (surfels.has_uvs or surfels.clip_line is not None)
     for name, value in (("Source", source), ("Vertices", len(mesh.positions)), ("Turns", float(turns))):
         _give(modifier, name, value)
+    record_of(made).sources[0].shape = faces_of(source.evaluated_get(depsgraph).data)
     return None
 
 
 #: What to do about a source whose vertices do not stay the same.
-_INSTEAD = "delete the surfels and draw the object with Render as > Surfels in its object properties"
+INSTEAD = "delete the surfels and draw the object with Render as > Surfels in its object properties"
+
+
+def _changes_beside(one: bpy.types.Object, first: bpy.types.Object) -> bool:
+    """Whether a source that was joined with others changes its shape, or moves against the first."""
+    is_moved = one != first and moves_against(one, first)
+    return is_moved or changes_in_time(one) or bool(rebuilt_by(one) or changes_inside(one))
 
 
 def _why_never(source: bpy.types.Object) -> str | None:
     """The end of a sentence about a source that no surfels can be bound to."""
     name = rebuilt_by(source)
-    return name and f"its modifier {name!r} makes other faces from frame to frame; {_INSTEAD}"
+    return name and f"its modifier {name!r} makes other faces from frame to frame; {INSTEAD}"
 
 
 def not_bent(made: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> str | None:
@@ -100,15 +110,21 @@ def not_bent(made: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> str | No
         return why and f"What bends {source.name!r} does not bend its surfels: {why}"
     if not (modifier.show_render if depsgraph.mode == "RENDER" else modifier.show_viewport):
         return None
-    # it may have been converted to a curve, or to an object of another type
-    vertices = getattr(source.evaluated_get(depsgraph).data, "vertices", ())
-    count, bound = len(vertices), input_of(modifier, _identifier(modifier, "Vertices"))
-    if count == bound:
-        return None
-    return (
-        f"What bends {source.name!r} does not bend its surfels now: it has {count:,} vertices and had {bound:,} when "
-        f"it was converted; update the surfels, or {_INSTEAD}"
+    why = _why_not_now(modifier, source.evaluated_get(depsgraph).data, record_of(made).sources[0].shape)
+    return why and (
+        f"What bends {source.name!r} does not bend its surfels now: {why} when it was converted; update the surfels, "
+        f"or {INSTEAD}"
     )
+
+
+def _why_not_now(modifier: bpy.types.NodesModifier, data: bpy.types.ID | None, faces: str) -> str | None:
+    """How the evaluated data of a source differ from what surfels were bound to. faces: as `faces_of` told them, or an
+    empty string."""
+    # it may have been converted to a curve, or to an object of another type
+    count, bound = len(getattr(data, "vertices", ())), input_of(modifier, _identifier(modifier, "Vertices"))
+    if count != bound:
+        return f"it has {count:,} vertices and had {bound:,}"
+    return "it has other faces than" if faces and faces_of(data) != faces else None
 
 
 def is_bent(made: bpy.types.Object) -> bool:

@@ -30,7 +30,10 @@ class SurfelPointsSettings(PointsProperties, bpy.types.PropertyGroup):
 
 
 class SurfelSource(bpy.types.PropertyGroup):
+    """One source; `name` is the one it had."""
+
     object: PointerProperty(name="Source", type=bpy.types.Object)
+    shape: StringProperty(name="Shape", description="What it was made of when it was converted, as checksums")
 
 
 class SurfelRecord(bpy.types.PropertyGroup):
@@ -70,7 +73,8 @@ def keep_record(made: bpy.types.Object, sources: Iterable[bpy.types.Object], kin
     record.kind = kind
     record.sources.clear()
     for source in sources:
-        record.sources.add().object = source
+        entry = record.sources.add()
+        entry.object, entry.name = source, source.name
     kept = record.mesh if kind == "MESH" else record.points
     for name in _PROPERTIES[kind].__annotations__:
         setattr(kept, name, getattr(settings, name))

@@ -12,6 +12,7 @@ from ..ids import OBJECT_SETTINGS
 from .animation import animated_paths
 from .as_rendered import as_rendered, differing_levels
 from .bring_back import hide_source, is_disabled_in_renders
+from .changed_sources import remember_shapes
 from .following import follow, follow_visibility
 from .object_info import sentences_about
 from .shape_following import follow_shape, is_bent
@@ -58,11 +59,11 @@ def keep_unread(made: bpy.types.Object, conversion) -> None:
 
 def tie_shape(conversion, made: bpy.types.Object, kind: str) -> list[str]:
     """Make the surfels follow the deformation of their source; returns sentences like `tie`."""
-    if kind != "MESH":
-        return []
-    [source, *_] = conversion.sources
-    with as_rendered(conversion.sources, bpy.context) as depsgraph:
-        why = follow_shape(made, conversion, depsgraph)
+    [source, *_], why = conversion.sources, None
+    if kind == "MESH":
+        with as_rendered(conversion.sources, bpy.context) as depsgraph:
+            why = follow_shape(made, conversion, depsgraph)
+    remember_shapes(made, bpy.context.evaluated_depsgraph_get())
     if why:
         return [f"What bends {source.name!r} does not bend its surfels: {why}"]
     if is_bent(made) and (differing := differing_levels(source)):

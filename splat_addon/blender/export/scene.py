@@ -18,8 +18,8 @@ from ...rendering import Instance, Light, Scene
 from ...rendering.detail.levels import replaced
 from ...streaming import Stream
 from ...surfels import Surfels
+from ..conversion.changed_sources import ChangedSources
 from ..conversion.placement import finite_matrix
-from ..conversion.shape_following import not_bent
 from ..conversion.source_record import is_stood_in, sources_in
 from ..faults import sentence_of
 from ..geometry.attributes import (
@@ -102,6 +102,7 @@ class SurfelStore:
         self.world = WorldStore()
         self.textures = TextureStore()
         self.derived = Derived()
+        self.changed_sources = ChangedSources()
         self.streams = Streams()
         self._kept: dict[int, Kept] = {}
         self._current: set[int] = set()
@@ -134,6 +135,7 @@ class SurfelStore:
         """
         self.world.begin_frame(is_sky_edited)
         self.derived.begin_frame()
+        self.changed_sources.begin_frame(changed is None or bool(changed))
         self.streams.begin_frame()
         self.textures.begin_frame(are_materials_edited, is_told=changed is not None)
         self._current = {k for k in self._current if changed is not None and self._kept[k].name not in changed}
@@ -162,7 +164,7 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
                 things.add(entry)
             except Exception as error:
                 notes.leave_out(entry.object.name, error)
-    for sentence in sorted(filter(None, (not_bent(each, depsgraph) for each in things.made))):
+    for sentence in store.changed_sources.sentences(things.made, depsgraph):
         notes.add(sentence)
     if older := sorted(each.name for each in things.made if not np.array_equal(since_written(each.data), np.eye(3))):
         notes.add(

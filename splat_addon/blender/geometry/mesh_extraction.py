@@ -8,6 +8,7 @@ with `take`, which takes a quarter of the time of indexing.
 
 from __future__ import annotations
 
+import zlib
 from collections.abc import Iterable
 from dataclasses import dataclass
 
@@ -58,13 +59,14 @@ class Topology:
     """What stays constant while a mesh deforms.
 
     corner_vertices: (C,).
-    faces: number of faces.
+    faces: number of faces. edges: a checksum, which tells where one face ends and the next begins.
     corners: (T, 3) face corners of the triangles, face_of: (T,) their faces; both None if every face is a triangle.
         They come from the mesh as first seen; Blender may triangulate a bent face differently later.
     """
 
     corner_vertices: np.ndarray
     faces: int
+    edges: int
     corners: np.ndarray | None
     face_of: np.ndarray | None
 
@@ -83,9 +85,10 @@ class Topology:
 def read_topology(mesh: bpy.types.Mesh, known: Topology | None = None) -> Topology:
     """The topology of the mesh; `known` itself if it is unchanged."""
     vertices = _corner_vertices(mesh)
-    if known is not None and known.faces == len(mesh.polygons) and np.array_equal(known.corner_vertices, vertices):
+    told = len(mesh.polygons), _edges(mesh)
+    if known is not None and (known.faces, known.edges) == told and np.array_equal(known.corner_vertices, vertices):
         return known
-    return Topology(vertices, len(mesh.polygons), *_triangle_corners(mesh))
+    return Topology(vertices, *told, *_triangle_corners(mesh))
 
 
 def read_mesh(
@@ -141,6 +144,13 @@ def read_without_pixels(evaluated: bpy.types.Object, mesh: bpy.types.Mesh) -> Ex
 def _positions(mesh: bpy.types.Mesh) -> np.ndarray:
     count = len(mesh.vertices)
     return read_values(mesh.attributes["position"].data, "vector", 3, count) if count else np.empty((0, 3), np.float32)
+
+
+def _edges(mesh: bpy.types.Mesh) -> int:
+    """A checksum of the vertices of the edges; 0 if every face is a triangle."""
+    if len(mesh.loops) == 3 * len(mesh.polygons):
+        return 0
+    return zlib.crc32(read_values(mesh.attributes[".edge_verts"].data, "value", 2, len(mesh.edges), np.int32))
 
 
 def _corner_vertices(mesh: bpy.types.Mesh) -> np.ndarray:

@@ -485,6 +485,7 @@ GERMAN = {
     "Normals": "Normalen",
     "Normals Face": "Normalen nach",
     "Not Sampled": "Nicht abgetastet",
+    "Shape": "Form",
     "Nothing": "Nichts",
     "Find Creases": "Falten finden",
     (
@@ -820,6 +821,9 @@ GERMAN = {
     "What happens to the object that was converted": "Was mit dem Objekt geschieht, das umgewandelt wurde",
     "What happens to the points that were converted": "Was mit den umgewandelten Punkten geschieht",
     "What the file holds": "Was die Datei enthält",
+    "What it was made of when it was converted, as checksums": (
+        "Woraus es bestand, als es umgewandelt wurde, als Prüfsummen"
+    ),
     "Material inputs that could not be read, one per line": (
         "Materialeingänge, die nicht gelesen werden konnten, einer pro Zeile"
     ),
