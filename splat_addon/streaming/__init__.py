@@ -10,6 +10,7 @@ read, are replaced by their parents. `checking` reads a whole file and compares 
 
 from .block_file import BlockFile
 from .checking import check, described
+from .own_files import id_of, own_file
 from .stream import Stream, Unreadable
 from .writing import PORTION, WritingCancelled, write_blocks
 
@@ -21,5 +22,7 @@ __all__ = [
     "WritingCancelled",
     "check",
     "described",
+    "id_of",
+    "own_file",
     "write_blocks",
 ]

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable
-from contextlib import closing
 from functools import partial
 from pathlib import Path
 from typing import BinaryIO
@@ -16,15 +15,12 @@ from ..hierarchy import build_hierarchy
 from ..hierarchy.blocks import Blocks, ranges
 from ..surfels import Surfels
 from ..whole_files import unfinished
-from .block_file import BlockFile
 from .buckets import Survey, filled, portions_of, surveyed
-from .layout import COLUMNS, FIELDS, PAGE, PageSums, align, as_surfels, begin, finish, joined_rows
+from .checking import check
+from .layout import COLUMNS, FIELDS, PageSums, align, as_surfels, begin, finish, joined_rows
 
 #: Surfels of one hierarchy, and those that are best given at once.
 PORTION = 1 << 20
-
-#: Pages of rows that are read back at once.
-_PAGES = 64
 
 #: Called with the finished share (0 to 1) and the step; returning False cancels.
 Progress = Callable[[float, str], bool]
@@ -70,16 +66,9 @@ def write_blocks(
 
 
 def _check(count: int, file: Path) -> None:
-    """Read a written file to its end, with all checksums. Raises OSError or ValueError."""
-    with closing(BlockFile(file)) as written:
-        if written.count != count:
-            raise ValueError(f"It has {written.count:,} of {count:,} surfels.")
-        for first in range(0, -(-written.rows // PAGE), _PAGES):
-            _, are_good = written.read_rows(np.arange(first, min(first + _PAGES, -(-written.rows // PAGE))))
-            if not are_good.all():
-                raise ValueError(written.fault())
-        if None in map(written.read_blocks, range(-(-written.size // PAGE))):
-            raise ValueError(written.fault())
+    """Raise OSError or ValueError if a written file is damaged, or does not hold `count` surfels."""
+    if (found := check(file)) != count:
+        raise ValueError(f"It has {found:,} of {count:,} surfels.")
 
 
 def _write(stream: BinaryIO, survey: Survey, portions: Iterable[np.ndarray], folder: Path, told) -> None:

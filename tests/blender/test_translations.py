@@ -67,6 +67,35 @@ def test_blender_says_it_in_german():
         view.language = kept
 
 
+def test_the_template_replaces_only_one_that_is_as_it_was_written(tmp_path, capsys):
+    file = tmp_path / "texts.pot"
+    assert commands.run(["template", str(file)]) == 0 == commands.run(["template", str(file)])
+    written = file.read_bytes()
+    for others in (
+        b"",
+        b"BLENDER",
+        written.replace(b'msgstr ""', b'msgstr "Ansicht"'),
+        written[:-1],
+        b"\xff" + written,
+    ):
+        file.write_bytes(others)
+        assert commands.run(["template", str(file)]) == 1 and file.read_bytes() == others
+        assert "is no template as this command writes it; name another file" in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == ["texts.pot"]
+
+
+def test_the_template_follows_no_link(tmp_path, capsys):
+    for target in (tmp_path / "scene.blend", tmp_path / "not there"):
+        link = tmp_path / "texts.pot"
+        try:
+            link.symlink_to(target)
+        except OSError:
+            pytest.skip("Links need a right on Windows.")
+        assert commands.run(["template", str(link)]) == 1
+        assert "is a link, which is not followed" in capsys.readouterr().err and not target.exists()
+        link.unlink()
+
+
 def test_the_template_has_each_text_once(tmp_path):
     file = tmp_path / "surfels.pot"
     assert commands.run(["template", str(file)]) == 0

@@ -22,7 +22,7 @@ from ..conversion.ties import tie
 from ..density_properties import DENSITIES
 from ..geometry.sources import has_surfaces
 from ..ids import CONVERSION_SETTINGS
-from .out_paths import file_at
+from .out_paths import file_at, made_room
 from .written_files import check_blend, check_end_of_blend
 
 HELP = "make surfels of objects, in a new file"
@@ -176,12 +176,6 @@ def place(batch: Batch, settings, kind: str = "MESH") -> None:
         follows = kind != "MESH" or settings.follow
         for note in tie(conversion, made, kind, settings, follows, hides=True):
             print(note, flush=True)
-
-
-def made_room(file: Path) -> Path:
-    """The file of a result, whose folder exists now. Raises OSError."""
-    file.parent.mkdir(parents=True, exist_ok=True)
-    return file
 
 
 def is_blend_there(out: Path) -> bool:

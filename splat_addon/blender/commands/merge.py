@@ -21,7 +21,6 @@ from .convert import (
     batch_of,
     block_file,
     is_blend_there,
-    made_room,
     place,
     refuse,
     request_of,
@@ -30,6 +29,7 @@ from .convert import (
     settings_of,
     sources_of,
 )
+from .out_paths import made_room
 from .pictures import (
     add_picture_arguments,
     files_of,

@@ -29,3 +29,9 @@ def file_at(out: str, suffix: str, name: str = "") -> Path:
     if path.suffix != suffix:
         raise ValueError(f"The result is a {suffix} file, not {path.name!r}; end the path of a folder with a slash.")
     return path
+
+
+def made_room(file: Path) -> Path:
+    """The file of a result, whose folder exists now. Raises OSError."""
+    file.parent.mkdir(parents=True, exist_ok=True)
+    return file

@@ -15,7 +15,8 @@ from ..conversion.points_conversion import PointsBatch
 from ..conversion.points_settings import PointsProperties, keywords, viewpoint
 from ..conversion.source_record import SurfelPointsSettings
 from ..geometry.points_extraction import has_points
-from .convert import is_blend_there, made_room, named, place, result, save
+from .convert import is_blend_there, named, place, result, save
+from .out_paths import made_room
 
 HELP = "make surfels of bare points, in a new file"
 DESCRIPTION = (

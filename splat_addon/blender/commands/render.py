@@ -17,7 +17,7 @@ from ...rendering.assembly.frame_parts import Part, write_part
 from ...whole_files import unfinished
 from ..engine import final_render
 from ..export.camera import picture_size
-from .convert import made_room
+from .out_paths import made_room
 from .pictures import (
     add_picture_arguments,
     expected_size,

@@ -17,8 +17,8 @@ from ...surfels import Surfels, portions
 from ..geometry.sources import is_surfel_object
 from ..geometry.surfel_files import file_of
 from ..geometry.world_surfels import world_surfels
-from .convert import add_density_arguments, batch_of, made_room, refuse, sources_of
-from .out_paths import file_at
+from .convert import add_density_arguments, batch_of, refuse, sources_of
+from .out_paths import file_at, made_room
 
 HELP = "store surfels in a file that views stream"
 DESCRIPTION = (

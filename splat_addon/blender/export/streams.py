@@ -9,7 +9,7 @@ import bpy
 
 from ...streaming import Stream
 from ..geometry.points_proxy import is_points_modifier
-from ..geometry.surfel_files import file_of
+from ..geometry.surfel_files import file_of, is_others
 from ..preferences import stream_bytes
 from ..working_space import from_rec709
 
@@ -38,6 +38,11 @@ class Streams:
             key = path, status.st_mtime_ns, status.st_size, most, primaries.tobytes()
             if key not in self._open:
                 self._open[key] = Stream(path, most, primaries)
+            if is_others(owner.data, self._open[key].file.id):
+                raise ValueError(
+                    f"What is in {path} was stored there by another object or another file; choose the object's own "
+                    "file, or convert it again."
+                )
         except (OSError, ValueError) as error:
             why = f"{path}: {error.strerror or error}." if isinstance(error, OSError) else str(error)
             raise ValueError(

@@ -3,9 +3,14 @@
 
 Such a mesh has only the coarsest surfels, as ordinary point attributes: they are seen and clicked in other shading
 modes, and drawn while the file is missing. It has no file again once a conversion fills it.
+
+A file that a mesh stored belongs to it: both have the id of what was written. Copies of the mesh, and of the .blend
+under another name, read the file, but none of them replaces it.
 """
 
 from __future__ import annotations
+
+import os
 
 import bpy
 import numpy as np
@@ -27,16 +32,36 @@ def file_of(owner: bpy.types.Object) -> str:
     return bpy.path.abspath(path, library=owner.data.library) if path else ""
 
 
-def keep_coarsest(mesh: bpy.types.Mesh, path: str, relative: str) -> tuple[int, np.ndarray]:
+def own_id(mesh: bpy.types.Mesh) -> str:
+    """The id of the file that the mesh may replace; an empty string if there is none, or if other meshes or .blends may
+    read it too: a copy of the mesh, or the .blend of which this one is a copy."""
+    settings = getattr(mesh, MESH_SETTINGS)
+    others = (getattr(each, MESH_SETTINGS).file_id for each in bpy.data.meshes if each != mesh)
+    return "" if settings.file_blend != _blend_name() or settings.file_id in others else settings.file_id
+
+
+def _blend_name() -> str:
+    return os.path.basename(bpy.data.filepath)
+
+
+def is_others(mesh: bpy.types.Mesh, file_id: str) -> bool:
+    """Whether what is in the mesh's file by now is not what the mesh stored there."""
+    return getattr(mesh, MESH_SETTINGS).file_id not in ("", file_id)
+
+
+def keep_coarsest(mesh: bpy.types.Mesh, path: str, relative: str, is_own: bool) -> tuple[int, np.ndarray]:
     """Fill the mesh with the coarsest surfels of a file, and name the file in it; returns how many the file holds, and
     their (3,) origin, which becomes the object's location.
 
-    path: absolute. relative: the path to name. Raises OSError or ValueError if the file cannot be used.
+    path: absolute. relative: the path to name. is_own: the file was written for this mesh. Raises OSError or ValueError
+    if the file cannot be used.
     """
     stream = Stream(path, 0)
     try:
         fill(mesh, surfels_from_rec709(stream.at_most(KEPT)))
-        getattr(mesh, MESH_SETTINGS).file = relative
+        settings = getattr(mesh, MESH_SETTINGS)
+        settings.file = relative
+        settings.file_id, settings.file_blend = (stream.file.id, _blend_name()) if is_own else ("", "")
         return len(stream), stream.file.origin
     finally:
         stream.close()
@@ -52,8 +77,18 @@ def relative_path(path: str) -> str:
         return path
 
 
+def _forget_id(settings: SurfelMeshSettings, context: bpy.types.Context) -> None:
+    """A file that is named by hand is not the mesh's own."""
+    if settings.file:
+        settings.file_id = ""
+
+
 class SurfelMeshSettings(bpy.types.PropertyGroup):
-    """A mesh's settings: `mesh.surfel_splatting`."""
+    """A mesh's settings: `mesh.surfel_splatting`.
+
+    file_id: of what the mesh stored last, also after a conversion brought its surfels back. file_blend: the name of the
+    .blend in which that was.
+    """
 
     file: StringProperty(
         name="Surfel File",
@@ -63,7 +98,10 @@ class SurfelMeshSettings(bpy.types.PropertyGroup):
         ),
         subtype="FILE_PATH",
         options={"PATH_SUPPORTS_BLEND_RELATIVE"},
+        update=_forget_id,
     )
+    file_id: StringProperty(options={"HIDDEN"})
+    file_blend: StringProperty(options={"HIDDEN"})
 
 
 register, unregister = with_property(bpy.types.Mesh, MESH_SETTINGS, SurfelMeshSettings)

@@ -13,6 +13,7 @@ from mathutils import Matrix
 from ...doubts import doubts
 from ...interchange import Gaussians, PlyPortions, Points, StoredSurfels, read_contents
 from ...sampling import surfels_from_points
+from ...streaming import id_of
 from ...streaming.layout import SUFFIX
 from ...surfels import Surfels
 from ..conversion.points_settings import (
@@ -95,7 +96,8 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ModalWriting, ImportHelper, 
             return self.write_in_thread(context) if is_asked else self.write_now(context)
         try:
             if self._name.endswith(SUFFIX):
-                self._open(context, absolute(self.filepath))
+                count = self._open(context, absolute(self.filepath), is_own=False)
+                self.report({"INFO"}, said("{name}: {count:,} surfels", name=self._name, count=count))
                 return {"FINISHED"}
             contents = read_contents(absolute(self.filepath), self.flatness, self.float_colors)
             surfels, notes = _READERS[type(contents)](contents, self, context)
@@ -113,24 +115,28 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ModalWriting, ImportHelper, 
         return {"FINISHED"}
 
     def _begin(self, context):
-        return Keeping(absolute(self.filepath), absolute(f"//{Path(self._name).stem}{SUFFIX}"))
+        # repeated from the redo panel, it replaces the file whose object was undone
+        own = getattr(self, "_kept", "")
+        return Keeping(absolute(self.filepath), absolute(f"//{Path(self._name).stem}{SUFFIX}"), own)
 
     def _finish(self, context, keeping):
-        self._open(context, keeping.path)
+        count = self._open(context, keeping.path, is_own=True)
+        self._kept = id_of(keeping.path)
+        self.report({"INFO"}, said("{count:,} surfels -> {path}", count=count, path=keeping.path))
         for note in keeping.notes():
             self.report({"INFO" if is_mild(note) else "WARNING"}, note)
 
-    def _open(self, context, path: str):
-        """Add an object whose surfels are in a file of blocks. Raises OSError or ValueError."""
+    def _open(self, context, path: str, is_own: bool) -> int:
+        """Add an object whose surfels are in a file of blocks; returns how many. Raises OSError or ValueError."""
         mesh = bpy.data.meshes.new(Path(self._name).stem)
         try:
-            count, origin = keep_coarsest(mesh, path, relative_path(path))
+            count, origin = keep_coarsest(mesh, path, relative_path(path), is_own)
         except BaseException:
             bpy.data.meshes.remove(mesh)
             raise
         made = add_object_of(mesh, Matrix.Translation(origin), [active_collection(context)])
         select_only(context, [made])
-        self.report({"INFO"}, said("{name}: {count:,} surfels", name=self._name, count=count))
+        return count
 
     def _sentence(self, error):
         return f"{self._name}: {file_sentence(error)}"
@@ -139,9 +145,9 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ModalWriting, ImportHelper, 
 class Keeping(Writing):
     """The surfels of a PLY file on their way to a file of blocks. Raises OSError, and ValueError if it is no PLY."""
 
-    def __init__(self, source: str, path: str):
+    def __init__(self, source: str, path: str, own: str = ""):
         parts = PlyPortions(source)
-        super().__init__(path, parts, len(parts))
+        super().__init__(path, parts, len(parts), own)
 
     def notes(self) -> list[str]:
         """A sentence about each thing that was left out, assumed or found doubtful."""

@@ -9,7 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import bpy
 
-from ...streaming import WritingCancelled, write_blocks
+from ...streaming import WritingCancelled, own_file, write_blocks
 from ...surfels import Surfels
 from ..spoken import said
 from .file_paths import file_sentence
@@ -18,14 +18,14 @@ _TIMER_SECONDS = 0.1
 
 
 class Writing:
-    """A file that is being written, and appears once it is complete. share: the finished share. is_cancelled: set from
-    outside.
+    """A file that is being written, and appears once it is complete. path: where, which is another one if somebody
+    else's file is there. share: the finished share. is_cancelled: set from outside.
 
-    expected: about how many surfels the parts have.
+    expected: about how many surfels the parts have. own: the id of the file that may be replaced, see `own_file`.
     """
 
-    def __init__(self, path: str, parts: Iterable[Surfels], expected: int):
-        self.path = path
+    def __init__(self, path: str, parts: Iterable[Surfels], expected: int, own: str = ""):
+        self.path, self._own = path, own
         self.share, self.is_cancelled = 0.0, False
         self._parts, self._expected = parts, expected
 
@@ -37,7 +37,8 @@ class Writing:
             told(share)
             return not self.is_cancelled
 
-        write_blocks(self.path, self._parts, progress, expected=self._expected)
+        with own_file(self.path, self._own) as self.path:
+            write_blocks(self.path, self._parts, progress, expected=self._expected)
 
 
 class ModalWriting:

@@ -11,12 +11,15 @@ from ...surfels import portions
 from ..doors import register_classes_factory
 from ..geometry.attributes import read_surfels
 from ..geometry.sources import is_surfel_object
-from ..geometry.surfel_files import file_of, keep_coarsest, relative_path
+from ..geometry.surfel_files import file_of, keep_coarsest, own_id, relative_path
 from ..geometry.world_surfels import as_in_files
 from ..ids import STORE_SURFELS
 from ..spoken import said
 from .file_paths import absolute, path_property
 from .modal_writing import ModalWriting, Writing
+
+#: Letters of an object's name in that of its file: in UTF-8, and with a suffix, they fit in 255 bytes.
+_LONGEST_NAME = 50
 
 
 class Storing(Writing):
@@ -28,14 +31,15 @@ class Storing(Writing):
     def __init__(self, owner: bpy.types.Object, filepath: str):
         if owner.data.library is not None:
             raise ValueError(said("The surfels belong to a linked file; store them there"))
-        path = absolute(filepath or f"//{bpy.path.clean_name(owner.name)}{SUFFIX}")
+        path = absolute(filepath or f"//{bpy.path.clean_name(owner.name)[:_LONGEST_NAME]}{SUFFIX}")
         self._owner = owner
         surfels, self.unusable = read_surfels(owner.data)
-        super().__init__(path, portions(as_in_files(surfels, owner), PORTION), len(surfels))
+        parts = portions(as_in_files(surfels, owner), PORTION)
+        super().__init__(path, parts, len(surfels), own_id(owner.data))
 
     def finish(self) -> int:
         """Leave the coarsest surfels in the object; returns how many the file holds."""
-        count, _ = keep_coarsest(self._owner.data, self.path, relative_path(self.path))
+        count, _ = keep_coarsest(self._owner.data, self.path, relative_path(self.path), is_own=True)
         return count
 
 

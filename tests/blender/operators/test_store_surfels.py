@@ -8,12 +8,13 @@ import bpy
 import numpy as np
 import pytest
 
+from splat_addon.blender.export.streams import Streams
 from splat_addon.blender.geometry import surfel_files
 from splat_addon.blender.geometry.attributes import write_surfels
 from splat_addon.blender.operators import import_ply, modal_writing
 from splat_addon.blender.operators.store_surfels import Storing
 from splat_addon.interchange import write_ply
-from splat_addon.streaming import BlockFile, Stream, WritingCancelled, write_blocks
+from splat_addon.streaming import BlockFile, Stream, WritingCancelled, id_of, write_blocks
 from splat_addon.surfels import Surfels
 
 
@@ -58,6 +59,82 @@ def test_the_file_has_the_surfels_and_the_object_the_coarsest(ball, saved, surfe
 def test_an_object_with_a_file_is_stored_no_second_time(ball, saved):
     bpy.ops.object.surfels_to_file()
     assert not bpy.ops.object.surfels_to_file.poll()
+
+
+def stored(resolution):
+    """Convert the active object's source again at this resolution, and store the surfels; returns where."""
+    made = bpy.context.object
+    made.surfel_record.mesh.resolution = resolution
+    bpy.ops.object.surfels_update()
+    assert bpy.ops.object.surfels_to_file() == {"FINISHED"}
+    return made.data.surfel_splatting.file
+
+
+def counts(folder):
+    """Name -> number of surfels of every file in the folder."""
+    return {path.name: BlockFile(path).count for path in sorted(folder.glob("*.surfelblocks"))}
+
+
+def test_the_same_object_replaces_its_own_file(ball, saved):
+    first, fewer = stored(16), counts(saved)
+    assert stored(20) == first == "//Cube_surfels.surfelblocks"
+    assert counts(saved).keys() == fewer.keys() and counts(saved) != fewer
+
+
+def test_objects_whose_names_are_one_file_name_have_a_file_each(opaque, add_object, saved):
+    for name, count in (("a/b", 100), ("a:b", 200), ("a b", 300)):
+        add_object(write_surfels(name, opaque(count)))
+        bpy.ops.object.surfels_to_file()
+    assert counts(saved) == {"a_b.001.surfelblocks": 200, "a_b.002.surfelblocks": 300, "a_b.surfelblocks": 100}
+
+
+def test_a_second_blend_in_the_folder_has_a_file_of_its_own(opaque, add_object, saved):
+    for name, count in (("scene.blend", 100), ("second.blend", 200)):
+        bpy.ops.wm.save_as_mainfile(filepath=str(saved / name))
+        add_object(write_surfels("ball", opaque(count)))
+        bpy.ops.object.surfels_to_file()
+        bpy.ops.wm.save_mainfile()
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+    assert counts(saved) == {"ball.001.surfelblocks": 200, "ball.surfelblocks": 100}
+
+
+def test_a_long_name_has_a_file_too(opaque, add_object, saved):
+    add_object(write_surfels("猫" * 60, opaque(100)))
+    bpy.ops.object.surfels_to_file()
+    assert list(counts(saved).values()) == [100]
+
+
+@pytest.mark.parametrize("way", ["object", "blend"])
+def test_a_copy_reads_the_file_and_stores_in_another(way, ball, saved):
+    first = stored(16)
+    if way == "object":
+        bpy.ops.object.duplicate()
+    else:
+        bpy.ops.wm.save_as_mainfile(filepath=str(saved / "copy.blend"))
+    before = counts(saved)
+    copy = bpy.context.object
+    assert copy.data.surfel_splatting.file == first
+    assert [Streams().get(copy).file.count] == list(before.values())
+    second = stored(20)
+    assert second != first and counts(saved).items() > before.items()
+    third = stored(24)
+    assert third == second and counts(saved).items() > before.items()
+    if way == "object":
+        # by now the first one is the only one that has its file
+        bpy.context.view_layer.objects.active = ball
+        ball.select_set(True)
+        assert stored(28) == first
+
+
+def test_an_object_draws_its_coarsest_surfels_if_its_file_holds_others(ball, saved, opaque):
+    stored(16)
+    (path,) = saved.glob("*.surfelblocks")
+    assert Streams().get(ball).file.id
+    write_blocks(path, [opaque(100)])
+    with pytest.raises(ValueError, match=r"coarsest surfels only.* was stored there by another object or another file"):
+        Streams().get(ball)
+    ball.data.surfel_splatting.file = ball.data.surfel_splatting.file
+    assert Streams().get(ball).file.count == 100  # named by hand
 
 
 def test_without_a_place_for_the_file_nothing_changes(ball, surfels_of):
@@ -167,6 +244,22 @@ def test_a_ply_file_goes_to_a_file_portion_by_portion(opaque, saved, tmp_path):
     assert made.data.surfel_splatting.file == "//scan.surfelblocks"
     assert tuple(made.location) == (1e6, 0, 5)
     assert BlockFile(saved / "scan.surfelblocks").count == 3000
+
+
+def test_a_second_ply_file_of_the_same_name_is_kept_in_another_file(opaque, saved):
+    for count in (100, 200):
+        write_ply(saved / "scan.ply", opaque(count))
+        bpy.ops.import_scene.surfels_ply(filepath=str(saved / "scan.ply"), keeps_in_file=True)
+    assert counts(saved) == {"scan.001.surfelblocks": 200, "scan.surfelblocks": 100}
+    assert bpy.context.object.data.surfel_splatting.file == "//scan.001.surfelblocks"
+
+
+def test_a_repeated_import_replaces_the_file_of_the_undone_one(opaque, saved):
+    path = str(saved / "scan.surfelblocks")
+    write_ply(saved / "scan.ply", opaque(100))
+    import_ply.Keeping(str(saved / "scan.ply"), path).write()
+    import_ply.Keeping(str(saved / "scan.ply"), path, id_of(path)).write()
+    assert counts(saved) == {"scan.surfelblocks": 100}
 
 
 def test_points_cannot_be_kept_in_a_file(saved):
