@@ -33,6 +33,11 @@ def from_rec709() -> np.ndarray:
     return _matrix(f"from_{_REC709}_to_scene_linear")
 
 
+def is_rec709() -> bool:
+    """Whether the working space is linear Rec. 709."""
+    return np.allclose(from_rec709(), np.eye(3), rtol=0, atol=1e-5)
+
+
 def surfels_from_rec709(surfels: Surfels) -> Surfels:
     """The surfels of a file in the working space; the same object if that is Rec. 709."""
     return recolored(surfels, from_rec709())

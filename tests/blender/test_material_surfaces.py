@@ -9,6 +9,7 @@ import pytest
 
 from splat_addon.blender.materials.material_surfaces import MeshLayers, material_surface
 from splat_addon.blender.materials.surface_textures import has_holes
+from splat_addon.blender.materials.texture_images import linear_pixels
 
 TEXELS = 4
 ENCODED = np.random.default_rng(3).integers(0, 256, (TEXELS, TEXELS, 4)) / 255
@@ -124,8 +125,41 @@ def test_an_alpha_that_is_not_linked_darkens_the_colour_as_in_cycles(image, pain
     nodes = Nodes()
     nodes.link(nodes.texture(image()), "Color", nodes.principled, "Base Color")
     surfels, texel = painted(nodes.material)
-    assert np.allclose(surfels.colors[:, :3], (decoded(ENCODED) * ENCODED[..., 3:])[texel][:, :3], atol=1e-6)
+    # Cycles multiplies the encoded bytes
+    stored = np.rint(255 * ENCODED[..., :3] * ENCODED[..., 3:]) / 255
+    assert np.allclose(surfels.colors[:, :3], decoded(stored)[texel], atol=1e-6)
     assert (surfels.colors[:, 3] == 1).all()
+
+
+#: What Cycles 5.2.3 shows of the bytes (200, 120, 40, 64), as 16 samples of a sun of strength pi on a diffuse surface
+#: without specular: alpha mode, packed?, other uses of the alpha? -> red. A premultiplied file is brighter than its
+#: alpha; a packed one was divided by Blender, and Cycles does not know that.
+CYCLES = {
+    ("STRAIGHT", False, False): 0.032,
+    ("STRAIGHT", False, True): 0.578,
+    ("PREMUL", False, False): 0.578,
+    ("PREMUL", False, True): 14.126,
+    ("PREMUL", True, False): 1.0,
+    ("PREMUL", True, True): 25.081,
+    ("CHANNEL_PACKED", False, False): 0.578,
+    ("CHANNEL_PACKED", False, True): 0.578,
+}
+
+
+@pytest.mark.parametrize(("mode", "is_packed", "is_apart"), CYCLES)
+def test_bytes_with_alpha_are_what_cycles_makes_of_them(image, tmp_path, mode, is_packed, is_apart):
+    drawn = image(np.full((2, 2, 4), (200, 120, 40, 64)) / 255, "CHANNEL_PACKED")
+    drawn.filepath_raw, drawn.file_format = str(tmp_path / "texture.png"), "PNG"
+    drawn.save()
+    texture = bpy.data.images.load(str(tmp_path / "texture.png"))
+    texture.alpha_mode = mode
+    if is_packed:
+        texture.pack()
+    before = len(bpy.data.images)
+    assert linear_pixels(texture, False, is_apart)[0, 0, 0] == pytest.approx(
+        CYCLES[mode, is_packed, is_apart], rel=0.02
+    )
+    assert len(bpy.data.images) == before
 
 
 def test_the_plain_colour_and_alpha_of_a_material_are_taken(painted):

@@ -25,9 +25,9 @@ class UnreadableError(Exception):
 def linear_pixels(image: bpy.types.Image, keep_alpha: bool, is_apart: bool = False) -> np.ndarray:
     """(h, w, 4) float32, linear in the file's working space, not premultiplied, row 0 at the bottom.
 
-    keep_alpha: whether the material uses the image's alpha; otherwise the result is opaque and, as in Cycles and
-    EEVEE, its colour premultiplied, unless the image's own alpha mode says that they are not related, or its colours
-    are data. In mode None an image has no alpha to keep.
+    keep_alpha: whether the material uses the image's alpha; otherwise the result is opaque and, as in Cycles, its
+    colour premultiplied, unless the image's own alpha mode says that they are not related, or its colours are data. In
+    mode None an image has no alpha to keep.
     is_apart: whether something else uses the alpha that is not kept. Then Cycles divides the interpolated colour by it,
     so the colour continues beyond the rim of what is covered.
     Raises UnreadableError for an image without pixels, a tiled or moving one, or a colour space that is not there.
@@ -36,19 +36,52 @@ def linear_pixels(image: bpy.types.Image, keep_alpha: bool, is_apart: bool = Fal
         raise UnreadableError(f"the {image.source.lower()} image {image.name!r}")
     pixels = _rgba(_stored_pixels(image), image)
     colors, alpha = pixels[..., :3], pixels[..., 3:]
-    if not image.is_float:
-        _decode(pixels, image)
     is_related = image.alpha_mode not in _ALPHA_IS_UNRELATED and image.colorspace_settings.name not in _DATA
     has_alpha = keep_alpha and image.alpha_mode != "NONE"
-    if is_related and image.is_float and (has_alpha or is_apart):
-        colors /= np.where(alpha == 0, 1, alpha)
+    is_divided = has_alpha or is_apart
+    if image.is_float:
+        if is_related and is_divided:
+            colors /= np.where(alpha == 0, 1, alpha)
+    elif is_related and image.colorspace_settings.name == "sRGB" and working_space.is_rec709():
+        _multiply_encoded(colors, alpha, image, is_divided)
+        _decode(pixels, image)
+    else:
+        _decode(pixels, image)
+        if is_related and not is_divided:
+            colors *= alpha
     if is_related and is_apart:
         _continue_beyond_rim(colors, alpha)
     if not has_alpha:
-        if is_related and not image.is_float and not is_apart:
-            colors *= alpha
         alpha[...] = 1.0
     return pixels
+
+
+def _multiply_encoded(colors: np.ndarray, alpha: np.ndarray, image: bpy.types.Image, is_divided: bool) -> None:
+    """Multiply 8-bit sRGB colours by alpha in place, before they are decoded, as Cycles does; is_divided: unless it
+    divides them by it again.
+
+    Cycles takes premultiplied images as they are: as their file says, or else as Blender holds them, which is straight.
+    """
+    if image.alpha_mode != "PREMUL":
+        if not is_divided:
+            colors *= alpha
+        return
+    is_held = image.source != "FILE" or image.packed_file is not None or image.is_dirty
+    if not is_held:
+        # Blender has divided them, and cut them off at 1
+        colors[...] = _as_stored(image) if ((colors == 1) & (alpha < 1)).any() else colors * alpha
+    if is_divided:
+        colors /= np.where(alpha == 0, 1, alpha)
+
+
+def _as_stored(image: bpy.types.Image) -> np.ndarray:
+    """(h, w, 3) the encoded colours of an image's file, whatever its alpha mode."""
+    twin = image.copy()
+    try:
+        twin.alpha_mode = "CHANNEL_PACKED"
+        return _rgba(_stored_pixels(twin), twin)[..., :3]
+    finally:
+        bpy.data.images.remove(twin)
 
 
 def settings_of(image: bpy.types.Image) -> tuple:
@@ -95,7 +128,7 @@ _AS_THEY_ARE = (*_DATA, "scene_linear")
 
 
 def srgb_to_linear(encoded: np.ndarray) -> np.ndarray:
-    """IEC 61966-2-1: display-encoded values in 0..1 -> linear ones."""
+    """IEC 61966-2-1: display-encoded values of 0 or more -> linear ones."""
     return np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
 
 
@@ -146,12 +179,15 @@ def _chunks(rows: np.ndarray) -> Iterator[np.ndarray]:
 
 
 def _decode_srgb(rows: np.ndarray) -> None:
-    """Make 8-bit sRGB values linear in place, through a table of their 256 possible results."""
+    """Make 8-bit sRGB values linear in place, through a table of their 256 possible results; and those above 1, which
+    a division by alpha made."""
     table = srgb_to_linear(np.arange(256) / 255).astype(np.float32)
     for chunk in _chunks(rows):
         # Alpha goes along, since three columns of four are slower than all, and comes back.
-        alpha = chunk[:, 3].copy()
+        alpha, bright = chunk[:, 3].copy(), chunk[:, :3] > 1
+        above = srgb_to_linear(chunk[:, :3][bright])
         np.take(table, (chunk * 255 + 0.5).astype(np.uint8), out=chunk, mode="clip")
+        chunk[:, :3][bright] = above
         chunk[:, 3] = alpha
 
 
