@@ -30,6 +30,10 @@ PARALLEL = ("-n", "auto", "--maxprocesses", "8", "--dist", "worksteal")
 #: thread for 0, in the same time: with a thread of its own, Mesa 22.3 crashed once in glTexImage2D, probably by a race.
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "LP_NUM_THREADS": "0"}
 
+#: Bytecode is written to a folder that can be deleted, even if the shell forbids it: otherwise each process compiles
+#: every test, which takes ten seconds.
+BYTECODE = {"PYTHONPYCACHEPREFIX": str(ROOT / "build" / "bytecode"), "PYTHONDONTWRITEBYTECODE": ""}
+
 
 def parse(arguments: list) -> tuple:
     """Our options, and the remaining ones for pytest."""
@@ -63,7 +67,7 @@ def blender_command(options: argparse.Namespace, python: Path, arguments: list) 
 def run(name: str, command: list, **variables) -> int:
     """Announce and run one group; returns pytest's exit code."""
     print(f"\n== group {name}: {' '.join(command)}", flush=True)
-    return subprocess.run(command, cwd=str(ROOT), env={**os.environ, **variables}).returncode
+    return subprocess.run(command, cwd=str(ROOT), env={**os.environ, **BYTECODE, **variables}).returncode
 
 
 def verdict(codes: dict) -> int:

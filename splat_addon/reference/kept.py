@@ -6,11 +6,12 @@ Tests and benches store exact pictures here, which are slow to compute.
 
 from __future__ import annotations
 
+import ast
 import hashlib
 import os
 import pickle
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cache, wraps
 from pathlib import Path
 
@@ -38,6 +39,30 @@ def folder(name: str, *sources: str) -> Path:
     return kept
 
 
+@cache
+def dependencies() -> tuple[str, ...]:
+    """The files that the reference consists of and those that it imports, directly or not, with tables beside them.
+
+    Not among them: the renderer's passes, shaders and Blender's side, so that work on those empties no cache.
+    """
+    found, left = set(), list(ROOT.glob("splat_addon/reference/**/*.py"))
+    while left:
+        file = left.pop()
+        if file not in found:
+            found.update((file, *file.parent.glob("*.npy")))
+            left += imported(file)
+    return tuple(sorted(file.relative_to(ROOT).as_posix() for file in found))
+
+
+def imported(file: Path) -> Iterator[Path]:
+    """The files of the product that a file imports from; the product imports relatively."""
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and node.level:
+            place = file.parents[node.level - 1].joinpath(*(node.module or "").split("."))
+            for path in (place, *(place / alias.name for alias in node.names)):
+                yield from (f for f in (path.with_suffix(".py"), path / "__init__.py") if f.is_file())
+
+
 def write(file: Path, contents: bytes) -> None:
     """Write a file completely or not at all: other processes may read it at any time."""
     written = file.with_name(f"{file.name}.{os.getpid()}")
@@ -46,13 +71,13 @@ def write(file: Path, contents: bytes) -> None:
 
 
 def remembered(function: Callable) -> Callable:
-    """`function`, which must be pure and part of the product, with results cached in a file by the contents of its
+    """`function`, which must be pure and part of the reference, with results cached in a file by the contents of its
     arguments."""
 
     @wraps(function)
     def result(*arguments, **options):
         key = hashlib.sha256(pickle.dumps((function.__name__, arguments, options), protocol=5)).hexdigest()
-        file = folder(f"truths-numpy-{NUMPY}", "splat_addon/**/*.py") / key[:32]
+        file = folder(f"truths-numpy-{NUMPY}", *dependencies()) / key[:32]
         if file.exists():
             return pickle.loads(file.read_bytes())
         found = function(*arguments, **options)

@@ -3,10 +3,23 @@
 change.
 """
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from splat_addon.reference import kept
+
+#: A truth that depends on a description of the scene, and that on a sibling and a table; and what no truth depends on.
+PRODUCT = {
+    "reference/truth.py": "from ..rendering.scene import Scene",
+    "rendering/scene/__init__.py": "from .scene import Scene",
+    "rendering/scene/scene.py": "def f():\n    from ...surfels import Surfels",
+    "rendering/scene/table.npy": "1",
+    "surfels.py": "1",
+    "rendering/__init__.py": "from . import renderer",
+    "rendering/renderer.py": "from .scene import Scene",
+}
 
 
 @pytest.fixture
@@ -23,13 +36,20 @@ def counted():
 
 @pytest.fixture(autouse=True)
 def elsewhere(tmp_path, monkeypatch):
-    """A product of one file, stored in a separate folder."""
+    """A small product, stored in a separate folder."""
     monkeypatch.setattr(kept, "ROOT", tmp_path)
-    (tmp_path / "splat_addon").mkdir()
-    (tmp_path / "splat_addon" / "product.py").write_text("1")
-    kept.folder.cache_clear()
+    for name, text in PRODUCT.items():
+        file = tmp_path / "splat_addon" / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text)
+    as_a_new_process()
     yield tmp_path
+    as_a_new_process()
+
+
+def as_a_new_process():
     kept.folder.cache_clear()
+    kept.dependencies.cache_clear()
 
 
 def test_equal_arguments_are_found_again_and_others_are_not(counted):
@@ -41,19 +61,29 @@ def test_equal_arguments_are_found_again_and_others_are_not(counted):
     assert len(runs) == 3
 
 
-def test_a_change_of_the_product_forgets(counted, elsewhere):
+@pytest.mark.parametrize("changed", PRODUCT)
+def test_a_change_of_what_a_truth_depends_on_forgets_it(changed, counted, elsewhere):
     doubled, runs = counted
     doubled(np.arange(3))
-    (elsewhere / "splat_addon" / "product.py").write_text("2")
-    kept.folder.cache_clear()  # as a new process
+    with (elsewhere / "splat_addon" / changed).open("a") as file:
+        file.write("\n# changed")
+    as_a_new_process()
     doubled(np.arange(3))
-    assert len(runs) == 2
+    assert len(runs) == (1 if changed in ("rendering/__init__.py", "rendering/renderer.py") else 2)
+
+
+def test_truths_depend_on_the_scene_and_on_no_pass(monkeypatch):
+    monkeypatch.setattr(kept, "ROOT", Path(kept.__file__).parents[2])
+    found = kept.dependencies()
+    assert {"splat_addon/surfels.py", "splat_addon/rendering/shading_models/brdf_table.npy"} <= set(found)
+    rooms = "rendering/plan/", "rendering/features/", "rendering/renderer.py", "blender/"
+    assert not [file for file in found if file.startswith(tuple(f"splat_addon/{room}" for room in rooms))]
 
 
 def test_a_few_older_folders_stay(elsewhere):
     for number in range(kept.KEPT + 3):
-        (elsewhere / "splat_addon" / "product.py").write_text(str(number))
-        kept.folder.cache_clear()
+        (elsewhere / "splat_addon" / "surfels.py").write_text(str(number))
+        as_a_new_process()
         newest = kept.folder("few", "splat_addon/*.py")
     assert newest.is_dir() and len(list(newest.parent.iterdir())) == kept.KEPT
 
