@@ -8,6 +8,7 @@ script uses the one in the demo's environment.
 """
 
 import argparse
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -16,6 +17,11 @@ from pathlib import Path
 
 import environment
 from environment import ROOT, Problem
+
+# the extension's own way to write files, which needs no packages
+sys.path.append(str(ROOT))
+from splat_addon.claims import WritingError
+from splat_addon.whole_files import write_whole
 
 #: Path in Blender's scripts folder.
 BUILDER = Path("addons_core/bl_pkg/cli/blender_ext.py")
@@ -35,16 +41,17 @@ def build(python: Path, blender_scripts: Path, out: Path) -> Path:
     out.mkdir(parents=True, exist_ok=True)
     tags = f"--valid-tags={blender_scripts / TAGS}"
     tool = [str(python), str(blender_scripts / BUILDER)]
-    # An earlier zip stays until the new one is complete.
-    with tempfile.TemporaryDirectory(dir=out, prefix=".build-") as unfinished:
-        _run([*tool, "build", tags, f"--source-dir={ROOT}", f"--output-dir={unfinished}"])
-        (made,) = Path(unfinished).glob(ZIPS)
+    with tempfile.TemporaryDirectory() as scratch:
+        _run([*tool, "build", tags, f"--source-dir={ROOT}", f"--output-dir={scratch}"])
+        (made,) = Path(scratch).glob(ZIPS)
         write_reproducibly(made)
         _run([*tool, "validate", tags, str(made)])
-        for old in out.glob(ZIPS):
-            if old.name != made.name:
-                old.unlink()
-        return made.replace(out / made.name)
+        write_whole(out / made.name, made.read_bytes())
+    # earlier ones stay until the new one is complete
+    for old in out.glob(ZIPS):
+        if old.name != made.name:
+            old.unlink()
+    return out / made.name
 
 
 def write_reproducibly(package: Path) -> None:
@@ -62,7 +69,11 @@ def write_reproducibly(package: Path) -> None:
 def write_index(python: Path, blender_scripts: Path, out: Path) -> Path:
     """Write `index.json` beside the zips in `out`, which Blender reads as a repository of extensions. Raises
     Problem."""
-    _run([str(python), str(blender_scripts / BUILDER), "server-generate", f"--repo-dir={out}"])
+    with tempfile.TemporaryDirectory() as scratch:
+        for package in out.glob("*.zip"):
+            shutil.copyfile(package, Path(scratch) / package.name)
+        _run([str(python), str(blender_scripts / BUILDER), "server-generate", f"--repo-dir={scratch}"])
+        write_whole(out / "index.json", (Path(scratch) / "index.json").read_bytes())
     return out / "index.json"
 
 
@@ -88,9 +99,12 @@ def main(arguments: list) -> int:
     options = parser.parse_args(arguments)
     made = environment.make("demo")
     tools = made.python, wheel_scripts(made.folder), options.out.resolve()
-    print(build(*tools))
-    if options.index:
-        print(write_index(*tools))
+    try:
+        print(build(*tools))
+        if options.index:
+            print(write_index(*tools))
+    except WritingError as error:
+        raise Problem(str(error)) from None
     return 0
 
 

@@ -35,7 +35,11 @@ _LONGEST = 200
 _claims: dict[Path, int] = {}
 
 
-class ClaimedError(ValueError):
+class WritingError(ValueError):
+    """A result cannot be written, for a reason that the system does not report; with a sentence."""
+
+
+class ClaimedError(WritingError):
     """Another run makes the result."""
 
 

@@ -17,22 +17,20 @@ from functools import partial
 from pathlib import Path
 from typing import BinaryIO
 
-from .claims import claimed, mark, resolved
-
-#: Reads a written file back. Raises OSError, ValueError or RuntimeError with a sentence if it is not whole.
-Check = Callable[[Path], object]
+from .claims import WritingError, claimed, mark, resolved
 
 
-class NotWholeError(ValueError):
+class NotWholeError(WritingError):
     """A file could not be written to its end, or cannot be read back."""
 
 
 @contextmanager
-def unfinished(result: str | os.PathLike, check: Check) -> Iterator[Path]:
+def unfinished(result: str | os.PathLike, check: Callable[[Path], object]) -> Iterator[Path]:
     """A folder in which to write `result`, and files that belong beside it, under their own names.
 
-    When the context ends without an error, `check` reads back each of them, and they get their places: `result` where
-    its link points to, if it is one, with the mode of the file that it replaces. Folders in the folder are scratch.
+    When the context ends without an error, `check` reads back each of them, and raises OSError, ValueError,
+    RuntimeError or EOFError if it is not whole. Then they get their places: `result` where its link points to, if it is
+    one, with the mode of the file that it replaces. Folders in the folder are scratch.
 
     Raises OSError, ClaimedError if another run makes the same result, and NotWholeError with a sentence; then no file
     has been replaced, and nothing is left.
@@ -58,7 +56,7 @@ def unfinished(result: str | os.PathLike, check: Check) -> Iterator[Path]:
 
 
 @contextmanager
-def whole_file(path: str | os.PathLike, check: Check) -> Iterator[BinaryIO]:
+def whole_file(path: str | os.PathLike, check: Callable[[Path], object]) -> Iterator[BinaryIO]:
     """Open a stream that becomes the file `path`, as in `unfinished`. A device is written to directly."""
     target = resolved(path)
     if target.exists() and not target.is_file():
@@ -95,13 +93,13 @@ def _files(folder: Path) -> list[Path]:
     return sorted(path for path in folder.iterdir() if path.is_file())
 
 
-def _make_sure(file: Path, place: Path, check: Check) -> None:
+def _make_sure(file: Path, place: Path, check: Callable[[Path], object]) -> None:
     """Flush a file to the disk, read it back, and give it the mode of the one that it replaces."""
     with open(file, "rb+") as stream:
         os.fsync(stream.fileno())
     try:
         check(file)
-    except (OSError, ValueError, RuntimeError) as error:
+    except (OSError, ValueError, RuntimeError, EOFError) as error:
         why = error.strerror or error if isinstance(error, OSError) else error
         raise NotWholeError(
             f"{place} could not be written whole, so nothing was changed; is the disk full? {why}"

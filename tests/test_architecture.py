@@ -36,7 +36,16 @@ MAY_IMPORT = {
     },
     "interchange": {"clip_lines", "doubts", "quaternions", "surfels", "whole_files"},
     "streaming": {"claims", "clip_lines", "surfels", "primaries", "hierarchy", "interchange", "whole_files"},
-    "reference": {"clip_lines", "large_surfels", "quaternions", "surfels", "images", "rendering", "whole_files"},
+    "reference": {
+        "claims",
+        "clip_lines",
+        "large_surfels",
+        "quaternions",
+        "surfels",
+        "images",
+        "rendering",
+        "whole_files",
+    },
     "blender": {
         "array_files",
         "claims",

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import argparse
-import os
 import sys
 import tempfile
 from contextlib import contextmanager
@@ -18,11 +17,11 @@ from rich.table import Table
 from demonstration.models import call
 from environment import Problem, exit_with_problems
 from environment.leaving import run_and_leave
+from splat_addon.claims import WritingError
+from splat_addon.whole_files import NotWholeError, unfinished
 
 CONSOLE = Console()
 
-#: The last chunk of every PNG file.
-PNG_END = b"IEND\xaeB`\x82"
 FULL_DISK = "the disk is full, or the folder's quota used up; free some space and run this again."
 
 
@@ -81,33 +80,34 @@ def triangle_count(meshes: list) -> int:
 
 
 def render(picture: Path) -> None:
-    """Render a still picture to a file."""
+    """Render a still picture to a file; an earlier one is replaced only after the new one has been read back."""
+    from splat_addon.blender.commands.written_files import check_picture
+
     scene = bpy.context.scene
-    scene.render.filepath = str(picture)
     scene.render.image_settings.file_format = "PNG"
-    picture.unlink(missing_ok=True)
-    call("The render failed", bpy.ops.render.render, write_still=True)
-    if not picture.is_file():
-        raise Problem(f"The render left no {picture}: see what Blender printed above.")
-    if not picture.read_bytes().endswith(PNG_END):
-        raise Problem(f"Only a part of {picture} could be written: {FULL_DISK}")
+    with whole(picture), unfinished(picture, check_picture) as folder:
+        scene.render.filepath = str(folder / picture.name)
+        call("The render failed", bpy.ops.render.render, write_still=True)
+    scene.render.filepath = str(picture)
 
 
 def save(blend: Path) -> None:
-    """Save the file as a .blend; an earlier one is replaced only after the new one has been read back.
+    """Save the file as a .blend; an earlier one is replaced only after the new one has been read back."""
+    from splat_addon.blender.commands.written_files import save_blend
 
-    Blender 5.2 reports success even if a full disk holds only a part of the file.
-    """
-    unfinished = blend.with_name(f".{blend.stem}-{os.getpid()}.blend")
+    with whole(blend):
+        call("The .blend could not be saved", save_blend, out=blend)
+
+
+@contextmanager
+def whole(file: Path):
+    """Turn an error of writing the file into a Problem."""
     try:
-        call("The .blend could not be saved", bpy.ops.wm.save_as_mainfile, filepath=str(unfinished), copy=True)
-        with bpy.data.libraries.load(str(unfinished)):
-            pass
-        unfinished.replace(blend)
-    except OSError:
-        raise Problem(f"Only a part of {blend} could be written: {FULL_DISK}") from None
-    finally:
-        unfinished.unlink(missing_ok=True)
+        yield
+    except NotWholeError:
+        raise Problem(f"Only a part of {file} could be written: {FULL_DISK}") from None
+    except WritingError as error:
+        raise Problem(str(error)) from None
 
 
 def timed_frame() -> dict:

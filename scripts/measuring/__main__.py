@@ -9,11 +9,12 @@ import sys
 from importlib import import_module
 from pathlib import Path
 
-from environment import ROOT, exit_with_problems
+from environment import ROOT, Problem, exit_with_problems
 from environment.leaving import run_and_leave
 from measuring.devices import run_on
 from measuring.registry import modules
 from measuring.report import Report
+from splat_addon.claims import WritingError
 
 
 def parse(name: str, arguments: list[str]) -> argparse.Namespace:
@@ -49,7 +50,10 @@ def measure(name: str, options: argparse.Namespace, command: str) -> None:
 def main(arguments: list[str]) -> int:
     """Exit code 0, or 1 or 2 after printing one sentence."""
     name, *rest = arguments
-    measure(name, parse(name, rest), shlex.join(["python3", "scripts/bench.py", *arguments]))
+    try:
+        measure(name, parse(name, rest), shlex.join(["python3", "scripts/bench.py", *arguments]))
+    except WritingError as error:
+        raise Problem(str(error)) from None
     return 0
 
 

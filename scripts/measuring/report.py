@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import csv
 import datetime
+import io
 import os
 import platform
 import subprocess
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -23,6 +24,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, Ti
 
 from environment import ROOT
 from splat_addon.reference.metrics import srgb
+from splat_addon.whole_files import write_whole
 
 
 class Report:
@@ -76,10 +78,11 @@ class Report:
             print(f"\n{self.parts[at]}", flush=True)
 
     def csv(self, name: str, rows: list[dict]) -> None:
-        with (self.out / f"{name}.csv").open("w", newline="", encoding="utf-8") as file:
-            writer = csv.DictWriter(file, rows[0])
-            writer.writeheader()
-            writer.writerows(rows)
+        text = io.StringIO(newline="")
+        writer = csv.DictWriter(text, rows[0])
+        writer.writeheader()
+        writer.writerows(rows)
+        write_whole(self.out / f"{name}.csv", text.getvalue().encode("utf-8"))
 
     def picture(self, name: str, pictures: Iterable, columns: int = 0, encode=srgb, enlarged: int = 1, colors: int = 0):
         """Pictures (h, w, 3 or 4) with row 0 at the bottom, side by side or in rows of `columns`, as one PNG.
@@ -93,22 +96,23 @@ class Report:
         image = image.resize((enlarged * image.width, enlarged * image.height), Image.Resampling.NEAREST)
         if colors:
             image = image.quantize(colors, dither=Image.Dither.NONE)
-        image.save(self._file(name), optimize=True)
+        self._write_picture(name, lambda stream: image.save(stream, "PNG", optimize=True))
 
     def plot(self, name: str, figure) -> None:
         """Save a matplotlib figure."""
         from matplotlib import pyplot
 
-        figure.savefig(self._file(name))
+        self._write_picture(name, lambda stream: figure.savefig(stream, format="png"))
         pyplot.close(figure)
 
-    def _file(self, name: str) -> Path:
-        path = self.pictures / f"{name}.png"
+    def _write_picture(self, name: str, save: Callable[[io.BytesIO], None]) -> None:
+        path, stream = self.pictures / f"{name}.png", io.BytesIO()
+        save(stream)
+        write_whole(path, stream.getvalue())
         self.console.print(f"Picture: {path}", soft_wrap=True, markup=False, highlight=False)
-        return path
 
     def _write(self) -> None:
-        self.page.write_text("\n\n".join(self.parts) + "\n", encoding="utf-8")
+        write_whole(self.page, ("\n\n".join(self.parts) + "\n").encode("utf-8"))
 
 
 def markdown(columns: Sequence[str], lines: Iterable[Sequence[str]]) -> str:

@@ -20,6 +20,8 @@ import numpy as np
 from rich.progress import track
 from scipy.optimize import minimize
 
+from ..whole_files import whole_file
+
 FOLDER = Path(__file__).resolve().parents[1] / "rendering" / "shading_models"
 ROUGHNESS, ANGLES = 48, 32
 LEAST_ROUGHNESS = 0.03
@@ -166,8 +168,9 @@ def main() -> None:
             inverse = np.linalg.inv(matrix(frame, start))
             inverse /= inverse[1, 1]
             table[i, j] = inverse[0, 0], inverse[0, 2], inverse[2, 0], inverse[2, 2], scale, bias, mean[0], mean[2]
-    np.save(out / "brdf_table.npy", table.astype(np.float32))
-    np.save(out / "edge_table.npy", edge_table())
+    for name, values in (("brdf_table", table.astype(np.float32)), ("edge_table", edge_table())):
+        with whole_file(out / f"{name}.npy", np.load) as stream:
+            np.save(stream, values)
     print(f"{out}: {table.shape[0]} roughnesses x {table.shape[1]} angles")
 
 

@@ -8,14 +8,17 @@ from __future__ import annotations
 
 import ast
 import hashlib
-import os
 import pickle
 import shutil
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from functools import cache, wraps
 from pathlib import Path
 
 import numpy as np
+
+from ..claims import ClaimedError
+from ..whole_files import write_whole
 
 ROOT = Path(__file__).resolve().parents[2]
 #: Results of different numpy versions differ only by rounding; versions 1 and 2 have separate caches.
@@ -64,10 +67,9 @@ def imported(file: Path) -> Iterator[Path]:
 
 
 def write(file: Path, contents: bytes) -> None:
-    """Write a file completely or not at all: other processes may read it at any time."""
-    written = file.with_name(f"{file.name}.{os.getpid()}")
-    written.write_bytes(contents)
-    os.replace(written, file)
+    """Write a file completely or not at all: other processes may read it at any time, or write the same."""
+    with suppress(ClaimedError):
+        write_whole(file, contents)
 
 
 def remembered(function: Callable) -> Callable:

@@ -14,7 +14,6 @@ import bpy
 from ...array_files import is_archive
 from ...claims import claimed
 from ...sampling import Sampling, sample_block, sample_surface, write_blocks
-from ...whole_files import unfinished
 from ..conversion.batch import Batch, ConversionBatch
 from ..conversion.mesh_conversion import sampling_options
 from ..conversion.mesh_settings import choices
@@ -23,7 +22,7 @@ from ..density_properties import DENSITIES
 from ..geometry.sources import has_surfaces
 from ..ids import CONVERSION_SETTINGS
 from .out_paths import file_at, made_room
-from .written_files import check_blend, check_end_of_blend
+from .written_files import check_end_of_blend, save_blend
 
 HELP = "make surfels of objects, in a new file"
 DESCRIPTION = (
@@ -81,7 +80,7 @@ def run(options: argparse.Namespace) -> Iterator[Path]:
             for conversion in batch.prepared(bpy.context):
                 batch.sample(conversion)
             place(batch, settings_of(options))
-            save(out)
+            save_blend(out)
         else:
             _write_block(batch, file, options, request_of(sources, options))
         yield file
@@ -185,16 +184,3 @@ def is_blend_there(out: Path) -> bool:
         return out.is_file() and not check_end_of_blend(out)
     except ValueError as error:
         raise ValueError(f"{out} is there, but it is not whole: {error} Delete it, and run this again.") from error
-
-
-def save(out: Path) -> None:
-    """Save the file under a new name. Raises as `unfinished`, and RuntimeError with Blender's message."""
-    with unfinished(out, check_blend) as folder:
-        # Blender makes paths relative to the folder in which it saves, so that cannot be the hidden one
-        beside = folder.with_name(f"{folder.name}.blend")
-        try:
-            bpy.ops.wm.save_as_mainfile(filepath=str(beside), copy=True, check_existing=False)
-            beside.replace(folder / out.name)
-        finally:
-            for left in (beside, beside.with_name(f"{beside.name}@")):
-                left.unlink(missing_ok=True)

@@ -25,7 +25,6 @@ from .convert import (
     refuse,
     request_of,
     result,
-    save,
     settings_of,
     sources_of,
 )
@@ -41,6 +40,7 @@ from .pictures import (
     tile_place,
 )
 from .render import write_picture
+from .written_files import save_blend
 
 HELP = "join tiles or blocks, or check that all frames exist"
 DESCRIPTION = (
@@ -112,7 +112,7 @@ def _blocks(options: argparse.Namespace) -> Iterator[Path]:
         if missing := [file for file in files if not file.is_file()]:
             raise ValueError(f"{len(missing)} of {len(files)} blocks are missing, first {missing[0]}; convert them.")
         _join(files)
-        save(out)
+        save_blend(out)
         yield out
 
 

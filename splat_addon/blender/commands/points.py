@@ -15,8 +15,9 @@ from ..conversion.points_conversion import PointsBatch
 from ..conversion.points_settings import PointsProperties, keywords, viewpoint
 from ..conversion.source_record import SurfelPointsSettings
 from ..geometry.points_extraction import has_points
-from .convert import is_blend_there, named, place, result, save
+from .convert import is_blend_there, named, place, result
 from .out_paths import made_room
+from .written_files import save_blend
 
 HELP = "make surfels of bare points, in a new file"
 DESCRIPTION = (
@@ -47,7 +48,7 @@ def run(options: argparse.Namespace) -> Iterator[Path]:
         for conversion in batch.prepared(bpy.context):
             batch.sample(conversion)
         place(batch, options, "POINTS")
-        save(out)
+        save_blend(out)
         yield out
 
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Reads back what Blender wrote: it reports no error if a full disk holds only a part of a .blend or of a picture."""
+"""Reads back what Blender writes itself: it reports no error if a full disk holds only a part of a .blend or of a
+picture."""
 
 from __future__ import annotations
 
@@ -8,6 +9,7 @@ from pathlib import Path
 
 import bpy
 
+from ...whole_files import unfinished
 from .exr_files import is_exr, size_of_exr
 
 #: A .blend ends with a block of this name, which has 32 bytes, or 24 in files of Blender 4.5, or if it is compressed
@@ -18,6 +20,19 @@ _LAST_BLOCK, _LAST_BLOCK_SIZES, _TABLE_OF_PARTS = b"ENDB", (32, 24), b"\xb1\xea\
 _ENDS = {b"\x89PNG": b"IEND\xaeB`\x82", b"\xff\xd8\xff": b"\xff\xd9"}
 #: The same for a format that has no first bytes of its own, by the end of its files' names.
 _ENDS_BY_NAME = {".tga": b"TRUEVISION-XFILE.\x00"}
+
+
+def save_blend(out: Path) -> None:
+    """Save the open file under another name. Raises as `unfinished`, and RuntimeError with Blender's message."""
+    with unfinished(out, check_blend) as folder:
+        # Blender makes paths relative to the folder in which it saves, so that cannot be the hidden one
+        beside = folder.with_name(f"{folder.name}.blend")
+        try:
+            bpy.ops.wm.save_as_mainfile(filepath=str(beside), copy=True, check_existing=False)
+            beside.replace(folder / out.name)
+        finally:
+            for left in (beside, beside.with_name(f"{beside.name}@")):
+                left.unlink(missing_ok=True)
 
 
 def check_blend(file: Path) -> None:
