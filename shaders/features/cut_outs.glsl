@@ -57,7 +57,7 @@ void cut_outs_keep() {
 void cut_outs_keep() {
   if (texture_slot < 0.0) return;
   SurfaceTexture t = surface_texture(int(texture_slot));
-  if (t.is_cut_out && !is_kept(visible_alpha(t), int(draw.first_slot), ivec2(gl_FragCoord.xy))) discard;
+  if (t.is_cut_out && !is_kept(visible_alpha(t), int(instance.first_slot), ivec2(gl_FragCoord.xy))) discard;
 }
 
 #part polygons.frag

@@ -3,7 +3,7 @@
 
 #part gbuffer
 void light_links_add(inout Fragment f) {
-  gbuffer_light_set = draw.light_set * f.weight;
+  gbuffer_light_set = instance.light_set * f.weight;
 }
 
 #part lights
@@ -27,5 +27,5 @@ void light_links_polygons_prepare(inout Shaded s) {
 
 #part lit_splats.frag
 void light_links_prepare(Splat splat, int index) {
-  light_set = draw.light_set;
+  light_set = instance.light_set;
 }

@@ -35,6 +35,6 @@ void normal_maps_bend(inout vec3 normal) {
   bump = vec3(strength * bump.xy, mix(1.0, bump.z, min(strength, 1.0)));
   vec3 across = bump_signs.x * cross(bump_normal, bump_tangent);
   vec3 bent = bump.x * bump_tangent + bump.y * across + bump.z * bump_normal;
-  bent = mat3(draw.normal_matrix) * bent * bump_signs.y;
+  bent = mat3(instance.normal_matrix) * bent * bump_signs.y;
   if (dot(bent, bent) > 0.0) normal = normalize(bent);
 }

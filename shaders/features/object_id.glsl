@@ -4,7 +4,7 @@
 
 #part vertex
 float slot_number(float slot) {
-  return draw.first_slot + min(slot, draw.more_slots);
+  return instance.first_slot + min(slot, instance.more_slots);
 }
 
 #part splat_varyings

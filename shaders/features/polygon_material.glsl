@@ -14,5 +14,5 @@ vec3 polygon_own() {
 }
 
 void polygon_material_add() {
-  polygon_material = vec4(polygon_own(), dot(draw.light_set, vec4(0.0, 1.0, 2.0, 3.0)));
+  polygon_material = vec4(polygon_own(), dot(instance.light_set, vec4(0.0, 1.0, 2.0, 3.0)));
 }

@@ -10,7 +10,7 @@ void polygon_plane_plane(int corner, float slot, vec3 first, vec3 outward, bool 
 
 #part polygons.vert, writes_polygon_plane
 vec3 outward_normal(int corner, float side) {
-  return side * normalize(mat3(draw.normal_matrix) * corner_texel(corner, 1).xyz);
+  return side * normalize(mat3(instance.normal_matrix) * corner_texel(corner, 1).xyz);
 }
 
 // How far the ends of an edge lie below one another's tangent planes, together.

@@ -8,7 +8,7 @@ float eye_distance(vec3 position) {
 
 #part splat
 void split_hide(inout Splat splat) {
-  splat.is_hidden = splat.is_hidden || eye_distance(splat.position) < draw.split_distance;
+  splat.is_hidden = splat.is_hidden || eye_distance(splat.position) < instance.split_distance;
 }
 
 #part corner
@@ -18,10 +18,10 @@ void split_tell(int corner, float slot, vec3 eye) {
 
 #part visibility.frag, of_polygons
 void split_keep() {
-  if (draw.split_distance > 0.0 && eye_distance(split_place) > draw.split_distance) discard;
+  if (instance.split_distance > 0.0 && eye_distance(split_place) > instance.split_distance) discard;
 }
 
 #part polygons.frag
 void split_keep() {
-  if (draw.split_distance > 0.0 && eye_distance(split_place) > draw.split_distance) discard;
+  if (instance.split_distance > 0.0 && eye_distance(split_place) > instance.split_distance) discard;
 }

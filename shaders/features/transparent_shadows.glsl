@@ -3,7 +3,7 @@
 
 #part splat_varyings
 void transparent_shadows_tell(Splat splat, int index) {
-  opacity_surface = vec2(splat.opacity, 2.0 * draw.first_slot + (splat.is_back ? 1.0 : 0.0));
+  opacity_surface = vec2(splat.opacity, 2.0 * instance.first_slot + (splat.is_back ? 1.0 : 0.0));
 }
 
 #part visibility.frag

@@ -8,14 +8,14 @@ vec4 corner_texel(int corner, int number) {
 
 // In view space.
 vec3 corner_position(int corner) {
-  return (draw.model_view * vec4(corner_texel(corner, 0).xyz, 1.0)).xyz;
+  return (instance.model_view * vec4(corner_texel(corner, 0).xyz, 1.0)).xyz;
 }
 
 // Normal of the plane of a corner's triangle on its outward side, in view space, not normalised.
 vec3 triangle_normal(int corner, out vec3 first) {
   int start = corner / 3 * 3;
   first = corner_position(start);
-  return cross(corner_position(start + 1) - first, corner_position(start + 2) - first) * draw.orientation;
+  return cross(corner_position(start + 1) - first, corner_position(start + 2) - first) * instance.orientation;
 }
 
 bool shows_back(vec3 normal, vec3 first) {

@@ -2,12 +2,14 @@
 // Summary: adds weighted attributes to their sums; the depth test keeps visible splats. Hooks: `keep` discards, `color`
 //          changes the colour.
 
+#include "instances/{instances}.glsl"
 #include "depth_formats/{depth_format}.glsl"
 #include "hosts/gbuffer.glsl"
 #include "methods/{method}.glsl"
 
 #parts
 void main() {
+  begin_fragment();
   float weight = kernel_weight(place_depth.xy) * color_weight.w;
   float depth = seen_depth();
   if (!(weight > 0.0 && depth >= view.near)) discard;

@@ -1,6 +1,7 @@
 // References: Botsch et al. 2005, section 4 (deferred shading: attributes are blended, not colours).
 // Summary: for methods that draw quads in space: the corner and attributes of each splat.
 
+#include "instances/{instances}.glsl"
 #include "lib/nowhere.glsl"
 #include "hosts/splat.glsl"
 #include "hosts/splat_varyings.glsl"
@@ -8,9 +9,10 @@
 
 #parts
 void main() {
-  int index = drawn_splat(gl_VertexID / 3);
+  int vertex = begun_vertex();
+  int index = drawn_splat(vertex / 3);
   Splat splat = fetch_splat(index);
-  vec2 corner = triangle_corner(gl_VertexID);
+  vec2 corner = triangle_corner(vertex);
   mat2 widened = widen(splat);
   vec3 eye = footprint_corner(splat.position, splat.axis_u, splat.axis_v, corner);
   place_depth = vec3(corner, -eye.z);

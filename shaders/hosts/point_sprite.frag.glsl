@@ -2,11 +2,13 @@
 // Summary: the attributes of the nearest splat alone; shading divides by its weight. Hooks: `keep` discards, `add`
 //          fills further targets.
 
+#include "instances/{instances}.glsl"
 #include "hosts/gbuffer.glsl"
 #include "methods/{method}.glsl"
 
 #parts
 void main() {
+  begin_fragment();
   if (!is_in_disc(place, tilt_depth.xy)) discard;
   #hook keep()
   add_to_sums(color_weight.rgb, color_weight.w, tilt_depth.z);

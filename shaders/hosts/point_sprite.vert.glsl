@@ -2,6 +2,7 @@
 // Summary: for methods in which the nearest splat wins: a triangle around each sprite, parallel to the picture, at the
 //          depth of the splat's centre; backs are moved behind the fronts in their place.
 
+#include "instances/{instances}.glsl"
 #include "lib/nowhere.glsl"
 #include "hosts/splat.glsl"
 #include "hosts/splat_varyings.glsl"
@@ -9,12 +10,13 @@
 #include "methods/{method}.glsl"
 
 void main() {
-  int index = drawn_splat(gl_VertexID / 3);
+  int vertex = begun_vertex();
+  int index = drawn_splat(vertex / 3);
   Splat splat = fetch_splat(index);
   float radius = sqrt(max(dot(splat.axis_u, splat.axis_u), dot(splat.axis_v, splat.axis_v)));
   float depth = -splat.position.z, scale = view.is_parallel > 0.5 ? 1.0 : 1.0 / depth;
   vec2 tilt = sprite_tilt(splat.axis_u, splat.axis_v);
-  place = disc_in_sprite(tilt, triangle_corner(gl_VertexID));
+  place = disc_in_sprite(tilt, triangle_corner(vertex));
   tilt_depth = vec3(tilt, depth);
   color_weight = vec4(splat.color, splat.side_weight);
   normal = splat.normal;

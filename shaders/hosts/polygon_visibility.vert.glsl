@@ -3,19 +3,21 @@
 //          behind them, and at least by what the depth can resolve. The fragment shader is that of splats. Hook:
 //          `moved` is called with the moved corner.
 
+#include "instances/{instances}.glsl"
 #include "depth_formats/{depth_format}.glsl"
 #include "lib/nowhere.glsl"
 #include "hosts/corner.glsl"
 
 #parts
 void main() {
-  vec3 eye = corner_position(gl_VertexID), first;
-  vec3 outward = triangle_normal(gl_VertexID, first);
-  bool is_hidden = draw.hides_backs > 0.5 && shows_back(outward, first);
+  int vertex = begun_vertex();
+  vec3 eye = corner_position(vertex), first;
+  vec3 outward = triangle_normal(vertex, first);
+  bool is_hidden = instance.hides_backs > 0.5 && shows_back(outward, first);
   place_depth = vec3(0.0, 0.0, -eye.z);
-  float slot = corner_texel(gl_VertexID / 3 * 3, 0).w;
-  hand_on_corner(gl_VertexID, slot, eye);
-  vec4 moved = polygon_corner(eye, draw.epsilon);
-  #hook moved(gl_VertexID, slot, eye, first, outward, moved)
+  float slot = corner_texel(vertex / 3 * 3, 0).w;
+  hand_on_corner(vertex, slot, eye);
+  vec4 moved = polygon_corner(eye, instance.overlap);
+  #hook moved(vertex, slot, eye, first, outward, moved)
   gl_Position = is_hidden ? nowhere(first) : moved;
 }

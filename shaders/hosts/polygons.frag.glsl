@@ -2,10 +2,12 @@
 // Summary: the attributes of the nearest polygon. Hooks: `keep` discards, `color` changes the colour, `bend` the
 //          normal, `add` fills targets.
 
+#include "instances/{instances}.glsl"
 #include "depth_formats/{depth_format}.glsl"
 
 #parts
 void main() {
+  begin_fragment();
   if (!(depth_at >= view.near)) discard;
   #hook keep()
   write_depth(depth_at);

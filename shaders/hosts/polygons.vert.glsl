@@ -2,6 +2,7 @@
 // Summary: corners of polygons and their attributes, with the normal on the visible side. Of the two sides of a card,
 //          which are in the same place, the one that faces the viewer is seen. Hook: `plane` of the triangle.
 
+#include "instances/{instances}.glsl"
 #include "lib/nowhere.glsl"
 #include "hosts/corner.glsl"
 
@@ -13,15 +14,16 @@ vec3 moved_back(vec3 eye) {
 
 #parts
 void main() {
-  vec3 eye = corner_position(gl_VertexID), first;
-  vec3 outward = triangle_normal(gl_VertexID, first);
+  int vertex = begun_vertex();
+  vec3 eye = corner_position(vertex), first;
+  vec3 outward = triangle_normal(vertex, first);
   bool is_back = shows_back(outward, first);
-  vec4 place = corner_texel(gl_VertexID, 0);
+  vec4 place = corner_texel(vertex, 0);
   vec3 seen = is_back ? moved_back(eye) : eye;
   depth_at = -seen.z;
-  corner_normal = normalize(mat3(draw.normal_matrix) * corner_texel(gl_VertexID, 1).xyz) * (is_back ? -1.0 : 1.0);
-  corner_color = corner_texel(gl_VertexID, 2).rgb;
-  hand_on_corner(gl_VertexID, place.w, eye);
-  #hook plane(gl_VertexID, place.w, first, outward, is_back)
-  gl_Position = is_back && draw.hides_backs > 0.5 ? nowhere(first) : view.projection * vec4(seen, 1.0);
+  corner_normal = normalize(mat3(instance.normal_matrix) * corner_texel(vertex, 1).xyz) * (is_back ? -1.0 : 1.0);
+  corner_color = corner_texel(vertex, 2).rgb;
+  hand_on_corner(vertex, place.w, eye);
+  #hook plane(vertex, place.w, first, outward, is_back)
+  gl_Position = is_back && instance.hides_backs > 0.5 ? nowhere(first) : view.projection * vec4(seen, 1.0);
 }

@@ -4,6 +4,7 @@
 //          its own. Hooks: `weigh` for splats evaluated in space, `bound` changes how far is visible, `keep` discards,
 //          `color` changes the colour, `add` fills targets.
 
+#include "instances/{instances}.glsl"
 #include "hosts/gbuffer.glsl"
 #include "lib/place.glsl"
 #include "methods/{method}.glsl"
@@ -27,6 +28,7 @@ bool is_on_footprint() {
 
 #parts
 void main() {
+  begin_fragment();
   Plane plane = Plane(plane_center_gh.xy, plane_ab.xy, plane_ab.zw, plane_center_gh.zw, plane_depths.xy, plane_depths.z,
                       plane_depths.w, plane_det_radius.w, plane_det_radius.xyz);
   Candidate c = Candidate(plane, false, vec3(0.0), 0.0, 0.0, 0.0, vec4(0.0), color_weight.rgb);

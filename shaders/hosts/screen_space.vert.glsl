@@ -4,6 +4,7 @@
 //          if the method has replaced axes, `reach` for splats that nearer ones may not hide, `cull` for splats that
 //          need not be drawn.
 
+#include "instances/{instances}.glsl"
 #include "lib/nowhere.glsl"
 #include "hosts/splat.glsl"
 #include "hosts/splat_varyings.glsl"
@@ -16,9 +17,10 @@ const float MARGIN = 1.01;
 
 #parts
 void main() {
-  int index = drawn_splat(gl_VertexID / 3);
+  int vertex = begun_vertex();
+  int index = drawn_splat(vertex / 3);
   Splat splat = fetch_splat(index);
-  vec2 corner = triangle_corner(gl_VertexID);
+  vec2 corner = triangle_corner(vertex);
   bool is_orthographic = view.is_parallel > 0.5, in_space = false;
   #hook clip(splat, in_space)
   Plane true_plane = splat_plane(splat.position, splat.axis_u, splat.axis_v, is_orthographic), plane = true_plane;

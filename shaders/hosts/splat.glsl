@@ -23,7 +23,7 @@ struct Splat {
 
 // Unit geometric normal on the visible side, view space.
 vec3 geometric_normal(Splat splat) {
-  vec3 outward = cross(splat.axis_u, splat.axis_v) * (splat.is_back ? -draw.orientation : draw.orientation);
+  vec3 outward = cross(splat.axis_u, splat.axis_v) * (splat.is_back ? -instance.orientation : instance.orientation);
   return outward / max(length(outward), 1e-37);
 }
 
@@ -38,22 +38,22 @@ int drawn_splat(int triangle) {
 Splat fetch_splat(int index) {
   StoredSplat stored = stored_splat(index);
   #hook unpack(stored, index)
-  mat3 linear = mat3(draw.model_view);
+  mat3 linear = mat3(instance.model_view);
   Splat splat;
-  splat.position = (draw.model_view * vec4(stored.position, 1.0)).xyz;
+  splat.position = (instance.model_view * vec4(stored.position, 1.0)).xyz;
   splat.axis_u = linear * stored.axis_u;
   splat.axis_v = linear * stored.axis_v;
   splat.material = stored.material;
-  float cosine = outward_cosine(splat.position, splat.axis_u, splat.axis_v, draw.orientation, view.is_parallel > 0.5);
+  float cosine = outward_cosine(splat.position, splat.axis_u, splat.axis_v, instance.orientation, view.is_parallel > 0.5);
   splat.color = stored.color.rgb;
   splat.side_weight = cosine < 0.0 ? BACK_WEIGHT : 1.0;
   splat.amplitude = splat.shortened = splat.grain = 1.0;
   // A shading normal belongs to the side that it is on in the object: stretching may carry it across the plane.
   bool is_inward = dot(stored.normal, cross(stored.axis_u, stored.axis_v)) < 0.0;
-  splat.normal = normalize(mat3(draw.normal_matrix) * stored.normal) * (is_inward != cosine < 0.0 ? -1.0 : 1.0);
+  splat.normal = normalize(mat3(instance.normal_matrix) * stored.normal) * (is_inward != cosine < 0.0 ? -1.0 : 1.0);
   splat.opacity = clamp(stored.color.a, 0.0, 1.0);
   splat.is_back = cosine < 0.0;
-  splat.is_hidden = cosine < 0.0 && draw.hides_backs > 0.5;
+  splat.is_hidden = cosine < 0.0 && instance.hides_backs > 0.5;
   #hook hide(splat)
   #hook resize(splat, index)
   return splat;

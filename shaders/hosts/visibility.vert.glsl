@@ -4,6 +4,7 @@
 //          least by what the depth can resolve, or rounding would let a splat hide itself. Hooks: `blend` reduces the
 //          depth, `move` uses another length, `shape` changes the shape from the exact ellipse.
 
+#include "instances/{instances}.glsl"
 #include "depth_formats/{depth_format}.glsl"
 #include "lib/nowhere.glsl"
 #include "hosts/splat.glsl"
@@ -12,9 +13,10 @@
 
 #parts
 void main() {
-  int index = drawn_splat(gl_VertexID / 3);
+  int vertex = begun_vertex();
+  int index = drawn_splat(vertex / 3);
   Splat splat = fetch_splat(index);
-  vec2 corner = triangle_corner(gl_VertexID);
+  vec2 corner = triangle_corner(vertex);
   vec3 eye = footprint_corner(splat.position, splat.axis_u, splat.axis_v, corner);
   place_depth = vec3(corner, -eye.z);
   hand_on(splat, index);

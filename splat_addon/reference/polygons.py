@@ -10,7 +10,6 @@ import numpy as np
 from ..rendering.scene import PolygonInstance, Scene, SurfaceTexture
 from ..rendering.scene.camera import Camera
 from ..rendering.scene.finish import PLAIN
-from ..rendering.view import overlapping_radii
 from .rays import RayGrid, Surface
 from .splats import BACK_WEIGHT, has_finish, material_table
 from .textures import point_colors
@@ -42,7 +41,7 @@ def polygon_hits(scene: Scene, camera: Camera, grid: RayGrid, epsilon: float) ->
     n = grid.count
     columns = 10 + len(PLAIN.numbers) * has_finish(scene)
     found = Hits(np.full(n, np.inf), np.zeros(n), np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, columns)))
-    radii = overlapping_radii(scene)
+    radii = dict(zip(scene.table.placed, scene.table.overlaps, strict=True))
     for instance in scene.polygons:
         corners = eye_corners(instance, camera)
         depth, triangle, shares = whole_hits(instance, corners, origin, direction, camera.near, camera.far)
@@ -229,7 +228,7 @@ def joined(splats: Surface, polygons: Hits, contact: float) -> Surface:
 
 def contact(scene: Scene, epsilon: float) -> float:
     """Maximum depth of polygons behind splats of the same surface, world units; as `View.contact`."""
-    return (1 + 4 * epsilon) * max(overlapping_radii(scene).values(), default=0.0)
+    return (1 + 4 * epsilon) * float(scene.table.overlaps.max(initial=0.0))
 
 
 def are_lit(scene: Scene, camera: Camera, lamp: np.ndarray, position: np.ndarray, room: float) -> np.ndarray:

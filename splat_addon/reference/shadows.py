@@ -14,7 +14,6 @@ import numpy as np
 from ..rendering.scene import Scene
 from ..rendering.scene.camera import Camera
 from ..rendering.scene.light import Light
-from ..rendering.shadows.maps import casting
 from .polygons import are_lit
 from .splats import Splats, eye_splats
 
@@ -67,6 +66,12 @@ def _moved(splats: Splats, lamp: np.ndarray) -> np.ndarray:
     facing = np.nan_to_num(np.minimum(cosine, 1.0))
     turned = np.cos(np.arccos(facing) + BEND)
     return splats.grain() / np.maximum(turned, 1 / FARTHEST_BACK)
+
+
+def casting(scene: Scene) -> Scene:
+    """The scene with only the instances that cast shadows."""
+    kinds = {name: tuple(i for i in getattr(scene, name) if i.casts_shadow) for name in ("surfels", "polygons")}
+    return replace(scene, **kinds, lights=())
 
 
 def _without_solids(scene: Scene) -> Scene:

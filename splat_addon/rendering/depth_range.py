@@ -12,12 +12,23 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .scene import Placed, Scene
+from ..surfels import Surfels
 from .scene.camera import Camera
+from .scene.table import FromEye, InstanceTable
 
 #: The clip range extends beyond the bounds by this fraction of its ends (for a parallel camera, of its length or
 #: window), so that rounding clips nothing.
 _MARGIN = 1e-3
+
+
+#: The median depth of a view with more instances than this is taken from the middles of their boxes.
+_MOST_SAMPLED = 64
+
+#: Surfels or corners of an instance of which the median depth is taken.
+_SOME = 256
+
+#: Of more places than this, the bounds of the picture are those of boxes.
+_MOST_PLACES = 1 << 14
 
 
 class ClipRange(NamedTuple):
@@ -28,18 +39,32 @@ class ClipRange(NamedTuple):
     scale: float
 
 
-def clip_range(scene: Scene, camera: Camera, epsilon: float) -> ClipRange:
+class Seen(NamedTuple):
+    """The instances that may be in a camera's picture. outside: number of others. degenerate: of flattened ones."""
+
+    table: InstanceTable
+    from_eye: FromEye
+    outside: int
+    degenerate: int
+
+    @property
+    def depths(self) -> np.ndarray:
+        """(n, 8) depths of the corners of their boxes."""
+        return -self.from_eye.corners[..., 2]
+
+
+def clip_range(table: InstanceTable, camera: Camera, epsilon: float) -> ClipRange:
     """The clip range of everything that the camera sees."""
-    return clipped(camera, seen_by(scene, camera)[0], epsilon)
+    return clipped(camera, seen_by(table, camera), epsilon)
 
 
-def clipped(camera: Camera, seen, epsilon: float) -> ClipRange:
+def clipped(camera: Camera, seen: Seen, epsilon: float) -> ClipRange:
     """The clip range of what `seen_by` found."""
     near, far = _clip_range(camera, seen, epsilon)
     return ClipRange(near, far, _power_of_two_scale(camera, seen, near))
 
 
-def visible_space(camera: Camera, seen) -> tuple[float, float, np.ndarray]:
+def visible_space(camera: Camera, seen: Seen) -> tuple[float, float, np.ndarray]:
     """The least and greatest depth of what `seen_by` found, and (8, 3) world corners of the visible space between."""
     near, far = _clip_range(camera, seen, 0.0)
     left, right, bottom, top = camera.window
@@ -69,33 +94,29 @@ class DepthExtent:
     is_ahead: bool
 
 
-def depth_extent(scene: Scene, camera: Camera, epsilon: float) -> DepthExtent:
+def depth_extent(table: InstanceTable, camera: Camera, epsilon: float) -> DepthExtent:
     """The depth extent of objects that may be in the picture."""
-    seen, _, _ = seen_by(scene, camera)
+    seen = seen_by(table, camera)
     near, far = _clip_range(camera, seen, epsilon)
-    radius = max((radius for *_, radius in seen), default=0.0)
+    radii, nearest = seen.table.radii, seen.depths.min(axis=1)
     # Add a radius, because a method may lengthen the shorter half-axis.
-    reaches_near = any(float(depths.min()) - reach <= camera.near for _, depths, reach in seen if reach)
+    reaches_near = bool((nearest - radii <= camera.near)[radii > 0].any())
     left, right, bottom, top = camera.window
     unit, length = (max(right - left, top - bottom), far - near) if camera.is_orthographic else (near, far)
-    nearest = min((float(depths.min()) for _, depths, _ in seen), default=near)
-    return DepthExtent(near, far, length / unit, radius / unit, reaches_near, max(nearest, camera.near) > 0)
+    radius = float(radii.max(initial=0.0))
+    is_ahead = max(float(nearest.min(initial=np.inf)) if len(nearest) else near, camera.near) > 0
+    return DepthExtent(near, far, length / unit, radius / unit, reaches_near, is_ahead)
 
 
-def seen_by(scene: Scene, camera: Camera) -> tuple[list, int, int]:
-    """The instances that may be in the picture, the number of those outside it, and of those that are flattened.
-
-    Each of the first is (instance, depths of its box's corners, radius of its largest splat).
-    """
-    shown = scene.shown
-    firm = [instance for instance in shown if not instance.is_flattened]
-    if not firm:
-        return [], 0, len(shown)
-    corners = np.stack([instance.corners(camera) for instance in firm])
-    inside = ~beyond(corners.reshape(-1, 3), camera).reshape(6, *corners.shape[:2]).all(axis=2).any(axis=0)
-    kept = zip(firm, -corners[..., 2], inside.tolist(), strict=True)
-    seen = [(instance, depths, instance.radius) for instance, depths, is_inside in kept if is_inside]
-    return seen, len(firm) - len(seen), len(shown) - len(firm)
+def seen_by(table: InstanceTable, camera: Camera) -> Seen:
+    """The instances that may be in the picture."""
+    firm, from_eye = table.firm, table.firm.from_eye(camera)
+    are_beyond = beyond(from_eye.corners.reshape(-1, 3), camera).reshape(6, -1, 8)
+    inside = ~are_beyond.all(axis=2).any(axis=0)
+    outside, degenerate = len(firm) - int(inside.sum()), len(table) - len(firm)
+    if not outside:
+        return Seen(firm, from_eye, 0, degenerate)
+    return Seen(firm.taken(inside), from_eye.taken(inside), outside, degenerate)
 
 
 def beyond(corners: np.ndarray, camera: Camera) -> np.ndarray:
@@ -115,23 +136,35 @@ def beyond(corners: np.ndarray, camera: Camera) -> np.ndarray:
     )
 
 
-def picture_bounds(seen, camera: Camera) -> tuple[float, float, float, float] | None:
+def picture_bounds(seen: Seen, camera: Camera) -> tuple[float, float, float, float] | None:
     """Left, bottom, right and top in pixels of everything that `seen_by` found; None if any of it is not wholly in
     front of the camera, or there is nothing."""
-    if not seen:
+    if not len(seen.table):
         return None
-    places = np.concatenate([instance.hull(camera) for instance, *_ in seen])
+    places = _hulls(seen)
     if not (-places[:, 2] >= camera.near).all():
         return None
     pixels = camera.pixels_of(places)
     return (*pixels.min(axis=0).tolist(), *pixels.max(axis=0).tolist())
 
 
-def _clip_range(camera: Camera, seen, epsilon: float) -> tuple[float, float]:
-    if not seen:
+def _hulls(seen: Seen) -> np.ndarray:
+    """(n, 3) places in view space whose convex hull holds everything."""
+    table, corners = seen.table, seen.from_eye.corners
+    rows = np.flatnonzero(table.of_kinds(lambda placed: isinstance(placed.shape, Surfels)))
+    hulls = [table.shapes[shape].local_hull for shape in table.shape_of[rows[:_MOST_PLACES]].tolist()]
+    if sum(map(len, hulls)) > _MOST_PLACES or len(hulls) < len(rows):
+        return corners.reshape(-1, 3)
+    matrices = seen.from_eye.model_views[rows]
+    places = [hull @ matrix[:3, :3].T + matrix[:3, 3] for hull, matrix in zip(hulls, matrices, strict=True)]
+    return np.concatenate([np.delete(corners, rows, axis=0).reshape(-1, 3), *places])
+
+
+def _clip_range(camera: Camera, seen: Seen, epsilon: float) -> tuple[float, float]:
+    if not len(seen.table):
         return camera.near, camera.far
-    nearest = min(float(depths.min()) for _, depths, _ in seen)
-    farthest = max(float(depths.max()) + epsilon * radius for _, depths, radius in seen)
+    nearest = float(seen.depths.min())
+    farthest = float((seen.depths.max(axis=1) + epsilon * seen.table.radii).max())
     before, behind = abs(nearest), abs(farthest)
     if camera.is_orthographic:
         left, right, bottom, top = camera.window
@@ -141,22 +174,30 @@ def _clip_range(camera: Camera, seen, epsilon: float) -> tuple[float, float]:
     return near, max(far, near + max(abs(near) * _MARGIN, 1e-300))
 
 
-def _power_of_two_scale(camera: Camera, seen, near: float) -> float:
+def _power_of_two_scale(camera: Camera, seen: Seen, near: float) -> float:
     """The factor 2^-k that brings the median depth, weighted by surfel count, into 0.7 to 1.4."""
-    if not seen:
+    if not len(seen.table):
         return 1.0
-    depths = np.array([_median_depth(instance, camera, near) for instance, *_ in seen])
+    depths = _median_depths(seen, camera, near)
     if camera.is_orthographic:
         left, right, bottom, top = camera.window
         depths = np.maximum(np.abs(depths), max(right - left, top - bottom))
-    counts = np.array([len(instance.shape) for instance, *_ in seen])
+    counts = seen.table.counts
     order = np.argsort(depths)
     half = np.searchsorted(np.cumsum(counts[order]), counts.sum() / 2)
     return math.ldexp(1.0, -round(math.log2(depths[order][min(half, len(order) - 1)])))
 
 
-def _median_depth(instance: Placed, camera: Camera, near: float) -> float:
-    """The median depth of a sample between the clip planes; distant outliers count no more than others."""
-    depths = -instance.some_places(camera)[:, 2]
-    depths = depths[(depths > near) & (depths < camera.far)]
-    return float(np.median(depths)) if len(depths) else near
+def _median_depths(seen: Seen, camera: Camera, near: float) -> np.ndarray:
+    """(n,) the median depth of some places of each instance between the clip planes; distant outliers count no more
+    than others."""
+    if len(seen.table) > _MOST_SAMPLED:
+        middles = seen.depths.mean(axis=1)
+        return np.where((middles > near) & (middles < camera.far), middles, near)
+    medians = []
+    for matrix, shape in zip(seen.from_eye.model_views, seen.table.shape_of.tolist(), strict=True):
+        places = seen.table.shapes[shape].positions
+        depths = -(places[:: max(-(-len(places) // _SOME), 1)] @ matrix[:3, :3].T + matrix[:3, 3])[:, 2]
+        depths = depths[(depths > near) & (depths < camera.far)]
+        medians.append(float(np.median(depths)) if len(depths) else near)
+    return np.array(medians)

@@ -37,24 +37,15 @@ class Identities:
         return *self.scene.surfels, *self.scene.polygons
 
     @cached_property
-    def firsts(self) -> dict[Placed, int]:
-        """The number of each instance's first slot; the others follow."""
-        numbers, following = {}, 1
-        for instance in self._placed:
-            if instance not in numbers:
-                numbers[instance] = following
-                following += len(instance.materials)
-        return numbers
-
-    def slots(self, placed: Placed) -> tuple[int, int]:
-        """The number of an instance's first slot, and how many more slots it has; holdouts count as nothing."""
-        return (0, 0) if placed.is_holdout else (self.firsts[placed], len(placed.materials) - 1)
+    def _numbered(self) -> tuple[Placed, ...]:
+        """Each instance once, in the order of their numbers (`InstanceTable.slots`)."""
+        return tuple(dict.fromkeys(self._placed))
 
     @cached_property
     def indices(self) -> dict[str, np.ndarray]:
         """(n,) float32 pass index of each number's object, and of its material."""
-        objects = [0, *(instance.index for instance in self.firsts for _ in instance.materials)]
-        materials = [0, *(material.index for instance in self.firsts for material in instance.materials)]
+        objects = [0, *(instance.index for instance in self._numbered for _ in instance.materials)]
+        materials = [0, *(material.index for instance in self._numbered for material in instance.materials)]
         return {"object_index": np.array(objects, np.float32), "material_index": np.array(materials, np.float32)}
 
     @cached_property
@@ -65,7 +56,7 @@ class Identities:
     @cached_property
     def hashes(self) -> np.ndarray:
         """(n,) uint32 hash of each number's name; 0 for nothing."""
-        of_numbers = (self.names[instance.name] for instance in self.firsts for _ in instance.materials)
+        of_numbers = (self.names[instance.name] for instance in self._numbered for _ in instance.materials)
         return np.array([0, *of_numbers], np.uint32)
 
 
@@ -73,8 +64,8 @@ class Identified:
     """Collects the arrays of a frame that need numbers, tile by tile: those in `outputs`, empty until tiles are
     added."""
 
-    def __init__(self, scene: Scene, size: tuple[int, int], outputs: tuple[str, ...]):
-        self._identities = Identities(scene)
+    def __init__(self, identities: Identities, size: tuple[int, int], outputs: tuple[str, ...]):
+        self._identities = identities
         self.arrays = {name: np.zeros(size[::-1], np.float32) for name in INDICES if name in outputs}
         if "cryptomatte" in outputs:
             nothing = np.zeros(0, np.uint64), np.zeros(0)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .assembly.accumulation import mean_frame, sample_blocks, sample_camera
+from .assembly.accumulation import around_samples, mean_frame, sample_blocks, sample_camera
 from .assembly.panorama_faces import panorama_frame
 from .depth_range import clip_range
 from .detail.levels import forget_before, was_drawn
@@ -26,18 +26,21 @@ from .plan.build import plan
 from .plan.executor import Execution, TileContext, texture_key
 from .plan.frame_plan import FramePlan
 from .plan.graph import Pause, Texture
+from .plan.shared import Shared
 from .read_back import assembled, background, background_pixel, positions_of, read_tile
 from .scene import Scene
 from .scene.camera import Camera
 from .scene.panorama import Panorama
 from .settings import Settings
-from .shadows.maps import ShadowMap, among, casting
 from .shadows.receivers import Viewers, viewers
 from .upload.resources import Resources
-from .view import View, build_view
+from .view import build_view
 
 #: x, y, width, height in pixels.
 Tile = tuple[int, int, int, int]
+
+#: Plans that are kept while a picture is drawn: of the faces of a panorama.
+_MOST_PLANS = 6
 
 #: Called with the finished share (0 to 1) and the next step; returning False cancels.
 Progress = Callable[[float, str], bool]
@@ -63,6 +66,7 @@ class Renderer:
         self.device = device
         self.resources = Resources(device)
         self.streamed = Streamed()
+        self._refining: tuple[Scene, tuple, Shared] | None = None
 
     def render(
         self,
@@ -129,11 +133,18 @@ class Renderer:
         if is_repeatable:
             forget_before(scene)
 
+        planned = {}
+
         def draw(moved: Camera, of: Viewers, settings: Settings, told: Progress | None, part=None) -> Frame:
-            frame_plan = plan(
-                scene, moved, settings, viewers=of, part=part, samples=len(numbers), is_repeatable=is_repeatable
-            )
-            return self._frame(scene, moved, settings, told, frame_plan, part)
+            # through a lens, each sample has shadow maps of its own
+            key = (*_seen(of.sun), settings, part)
+            if key not in planned:
+                if len(planned) == _MOST_PLANS:
+                    planned.clear()
+                around = around_samples(moved, settings.samples)
+                options = {"viewers": of, "part": part, "samples": len(numbers), "is_repeatable": is_repeatable}
+                planned[key] = self._planned(scene, moved, settings, around=around, **options)
+            return self._frame(planned[key], moved, told, part)
 
         for number in numbers:
             if isinstance(camera, Panorama):
@@ -146,14 +157,21 @@ class Renderer:
                 was_drawn(scene)
             yield frame
 
-    def _frame(self, scene, camera: Camera, settings, progress, frame_plan: FramePlan, part: Tile | None) -> Frame:
+    def _planned(self, scene: Scene, camera: Camera, settings: Settings, **options) -> Shared:
+        """The plan of a picture and all that its samples share. options: of `plan`."""
+        frame_plan = plan(scene, camera, settings, **options)
+        check_samplers(frame_plan, self.device.max_samplers)
+        return Shared(scene, frame_plan, settings)
+
+    def _frame(self, shared: Shared, camera: Camera, progress, part: Tile | None) -> Frame:
         """The picture of one sample."""
+        scene, frame_plan, settings = shared.scene, shared.plan, shared.settings
         left, bottom, *size = part or (0, 0, *camera.size)
         stats = self._new_stats(frame_plan)
         started = perf_counter()
         try:
-            tiles, identified = [], Identified(scene, tuple(size), settings.outputs)
-            for tile, target in self._tiles(scene, camera, settings, frame_plan, stats, progress):
+            tiles, identified = [], Identified(shared.identities, tuple(size), settings.outputs)
+            for tile, target in self._tiles(shared, camera, stats, progress):
                 place = (tile[0] - left, tile[1] - bottom, *tile[2:])
                 tiles.append((place, read_tile(target, frame_plan, settings.outputs)))
                 if seen := [self._read_whole(t, tile, frame_plan) for t in frame_plan.facts.get("identity", ())]:
@@ -183,13 +201,15 @@ class Renderer:
         anything is drawn if the resources load surfels that are not there yet.
         """
         self._check(settings)
-        frame_plan = plan(scene, camera, settings)
+        self._refining = None
+        shared = self._planned(scene, camera, settings)
+        frame_plan = shared.plan
         if not frame_plan.passes:
             pixel = np.array(background_pixel(scene, settings), np.float32).reshape(1, 1, 4)
             yield Shown((0, 0, *camera.size), self.device.texture((1, 1), "RGBA32F", pixel), (0, 0, 1, 1))
             return
         with _restored(self.device):
-            for drawn in self._slices(scene, camera, settings, frame_plan, self._new_stats(frame_plan), None):
+            for drawn in self._slices(shared, camera, self._new_stats(frame_plan), None):
                 if isinstance(drawn, Pause):
                     if in_slices:
                         yield drawn
@@ -211,17 +231,27 @@ class Renderer:
         moved: the sample's camera. of: the cameras that shadow maps serve. Returns False if the picture is only
             background and there is nothing to add.
         """
-        frame_plan = plan(scene, moved, settings, viewers=of, is_added_up=True)
+        shared = self._refined(scene, moved, of, settings)
+        frame_plan = shared.plan
         if not frame_plan.passes:
             return False
         with _restored(self.device):
             if is_first:
                 self.device.target([self._sum(moved.size)]).clear(color=0.0)
-            for drawn in self._slices(scene, moved, settings, frame_plan, self._new_stats(frame_plan), None):
+            for drawn in self._slices(shared, moved, self._new_stats(frame_plan), None):
                 if isinstance(drawn, Pause) and len(frame_plan.tiles) == 1:
                     yield drawn
             was_drawn(scene)
         return True
+
+    def _refined(self, scene: Scene, moved: Camera, of: Viewers, settings: Settings) -> Shared:
+        """The plan of the samples that are added up, as long as they are of the same picture."""
+        key = (*_seen(of.sun), settings, self.resources.arrivals)
+        if self._refining is None or self._refining[0] is not scene or self._refining[1] != key:
+            around = around_samples(moved, settings.samples)
+            shared = self._planned(scene, moved, settings, viewers=of, is_added_up=True, around=around)
+            self._refining = scene, key, shared
+        return self._refining[2]
 
     def shown_sum(self, size: tuple[int, int], samples: int) -> Shown:
         """The mean of the samples added so far."""
@@ -232,6 +262,7 @@ class Renderer:
 
     def release(self) -> None:
         """Free everything on the device."""
+        self._refining = None
         self.resources.release()
 
     def _check(self, settings: Settings) -> None:
@@ -268,11 +299,11 @@ class Renderer:
         """As `_slices`, without pauses."""
         return (drawn for drawn in self._slices(*of) if not isinstance(drawn, Pause))
 
-    def _slices(self, scene, camera, settings, frame_plan, stats, progress) -> Iterator[tuple[Tile, Target] | Pause]:
+    def _slices(self, shared: Shared, camera: Camera, stats, progress) -> Iterator[tuple[Tile, Target] | Pause]:
         """Draw a plan's tiles. Nothing else may be drawn with these resources during a pause."""
+        scene, frame_plan, settings = shared.scene, shared.plan, shared.settings
         if not frame_plan.passes:
             return
-        check_samplers(frame_plan, self.device.max_samplers)
         sizes = {_drawn(tile, frame_plan)[2:] for tile in frame_plan.tiles}
         self.resources.forget_textures_but(
             {
@@ -282,35 +313,34 @@ class Renderer:
             }
         )
         self.resources.cuts.begin_frame()
-        self.resources.forget_atlases_but({placed.looked_up for placed in scene.shown})
+        self.resources.forget_atlases_but({kind.placed.looked_up for kind in scene.table.kinds})
         if self.resources.loading:
-            TileContext(self.resources, frame_plan, scene, camera, settings, None).check_arrived()
-        shadow_views = tuple(_seen_by_light(casting(scene), made, settings) for made in frame_plan.facts["shadow_maps"])
+            TileContext(self.resources, frame_plan, scene, camera, settings, None, shared).check_arrived()
         whole = None
         if frame_plan.tiles != ((0, 0, *camera.size),):
             drawn = camera.cropped(*_drawn((0, 0, *camera.size), frame_plan))
-            whole = clip_range(scene, drawn, settings.epsilon)
+            whole = clip_range(scene.table, drawn, settings.epsilon)
         execution = Execution(*self._watching(settings, frame_plan, stats, progress))
         for number, tile in enumerate(frame_plan.tiles):
             stats["tile"] = number
             tile_camera = camera.cropped(*_drawn(tile, frame_plan))
-            view = build_view(scene, tile_camera, settings.epsilon, whole)
-            context = TileContext(self.resources, frame_plan, scene, tile_camera, settings, view, shadow_views, tile)
-            stats["splats"] += sum(len(p.instance.surfels) for p in view.placed)
-            stats["polygons"] += sum(p.instance.polygons.triangles for p in view.polygons)
+            view = build_view(scene.table, tile_camera, settings.epsilon, whole)
+            context = TileContext(self.resources, frame_plan, scene, tile_camera, settings, view, shared, tile)
+            stats["splats"] += int(view.placed.table.counts.sum())
+            stats["polygons"] += int(view.polygons.table.triangles.sum())
             stats["instances"] += len(view.placed) + len(view.polygons)
             stats["instances_outside"] += view.outside
             stats["instances_degenerate"] = view.degenerate
-            coarse = 0
-            for p in view.placed:
+            for p in context.with_levels(view.placed):
                 context.drawn_count(p)  # chooses them
-                coarse += context.stored(p.instance).coarse
                 yield Pause()
+            coarse = sum(kind.count * context.stored(kind.placed).coarse for kind in view.placed.table.kinds)
             stats["surfels_coarse"] = max(stats["surfels_coarse"], coarse)
             target = yield from execution.run(frame_plan.steps, context)
             stats["layers"] = execution.turns
-            stats["instances_hidden"] += len(context.hidden)
-            stats["splats_drawn"] += sum(context.drawn_count(p) for p in view.placed if p not in context.hidden)
+            are_hidden = context.hidden[view.placed.table.numbers]
+            stats["instances_hidden"] += int(are_hidden.sum())
+            stats["splats_drawn"] += int(context.drawn_counts(view.placed)[~are_hidden].sum())
             yield tile, target
         del stats["tile"]
 
@@ -348,11 +378,9 @@ def _restored(device: Device) -> Iterator[None]:
     device.restore()
 
 
-def _seen_by_light(casters: Scene, made: ShadowMap, settings: Settings) -> View:
-    """What is drawn into a shadow map. The range of a sun's depths is that of all casters around, because its lookups
-    depend on it."""
-    whole = clip_range(casters, made.camera, settings.epsilon) if made.camera.is_orthographic else None
-    return build_view(among(casters, made.casters), made.drawn, settings.epsilon, whole, are_split=False)
+def _seen(camera: Camera) -> tuple:
+    """What tells apart the cameras that shadow maps are fitted to."""
+    return camera.matrix_world.tobytes(), camera.window, camera.size, camera.near, camera.far
 
 
 def _share(progress: Progress, turn: int, count: int) -> Progress:

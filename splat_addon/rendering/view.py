@@ -7,13 +7,17 @@ floating point) so that the median depth is about 1. The clip range is narrowed 
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
+from ..surfels import Surfels
 from .depth_range import ClipRange, clipped, picture_bounds, seen_by
-from .scene import Instance, Placed, PolygonInstance, Scene
+from .scene import Placed
 from .scene.camera import Camera
+from .scene.table import FromEye, InstanceTable
 
 #: Visibility moves every splat back by at least this many steps of the depth buffer: rounding in the rasterizer's
 #: interpolation is one or two steps.
@@ -25,23 +29,78 @@ SPLIT_OVERLAP = 1.5
 
 @dataclass(frozen=True, eq=False)
 class DrawItem:
-    """model_view: (4, 4) float64, positions (without origin) to scaled view space.
-    normal_matrix: (3, 3) float64, its inverse transpose up to a positive factor.
-    hides_backs: splats or polygons that face away are skipped.
-    overlap: of polygons, how far behind them splats still count, view units.
-    setback: minimum distance by which a visibility pass moves it back, beside `View.least_offset` and in its unit.
-    split_distance: of polygons the farthest distance, of splats the least of their centres, view units; 0: no limit.
-    part: of the storage, for a draw call.
-    """
+    """One of the instances that a view draws, as `Items` have it. part: of its storage, for a draw call."""
 
     instance: Placed
-    model_view: np.ndarray
-    normal_matrix: np.ndarray
-    hides_backs: bool
-    overlap: float = 0.0
-    split_distance: float = 0.0
-    setback: float = 0.0
+    items: Items
+    row: int
     part: int = 0
+
+    @property
+    def hides_backs(self) -> bool:
+        return bool(self.items.hides_backs[self.row])
+
+    @property
+    def split_distance(self) -> float:
+        return float(self.items.split_distances[self.row])
+
+    @property
+    def number(self) -> int:
+        """Its row in the table of the scene."""
+        return int(self.items.table.numbers[self.row])
+
+
+@dataclass(frozen=True, eq=False)
+class Items:
+    """Instances that a view draws, all of them surfels or all of them polygons.
+
+    table, from_eye: of length n. scale: world to view units. hides_backs: (n,) bool, splats or polygons that face away
+        are skipped. overlaps: (n,) of polygons, how far behind them splats still count, view units.
+    split_distances: (n,) of polygons the farthest distance, of splats the least of their centres, view units; 0: no
+        limit.
+    setback: minimum distance by which a visibility pass moves them back, beside `View.least_offset` and in its unit.
+    """
+
+    table: InstanceTable
+    from_eye: FromEye
+    scale: float
+    hides_backs: np.ndarray
+    overlaps: np.ndarray
+    split_distances: np.ndarray
+    setback: float = 0.0
+
+    def __len__(self) -> int:
+        return len(self.table)
+
+    def __iter__(self) -> Iterator[DrawItem]:
+        return map(self.item, range(len(self)))
+
+    def item(self, row: int) -> DrawItem:
+        return DrawItem(self.table.placed[row], self, row)
+
+    def taken(self, rows: np.ndarray) -> Items:
+        """Some of them. rows: (m,) numbers or (n,) bool."""
+        if rows.dtype == bool:
+            if rows.all():
+                return self
+            rows = np.flatnonzero(rows)
+        each = (array[rows] for array in (self.hides_backs, self.overlaps, self.split_distances))
+        return Items(self.table.taken(rows), self.from_eye.taken(rows), self.scale, *each, self.setback)
+
+    def of_kinds(self, which: Callable[[Placed], bool]) -> Items:
+        """The items of those kinds for which a function of one instance is true."""
+        return self.taken(self.table.of_kinds(which))
+
+    @property
+    def key(self) -> bytes:
+        """A key that is equal for equal items of one scene, seen from one place."""
+        each = self.table.numbers, self.hides_backs, self.overlaps, self.split_distances, np.array(self.scale)
+        return b"".join(array.tobytes() for array in each)
+
+    @cached_property
+    def nearest(self) -> np.ndarray:
+        """(n,) least depth of each one's box, world units."""
+        return -self.from_eye.corners[..., 2].max(axis=1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +112,7 @@ class View:
     depth_span: how many times the resolution of float32 the hardware's depth resolves at its farthest: far / near, of
         an orthographic camera far - near in view units.
     bounds: left, bottom, right, top in pixels outside of which nothing is; None if that is not known.
-    polygons: draw items of polygons. contact: maximum depth of polygons behind splats of the same surface.
+    contact: maximum depth of polygons behind splats of the same surface.
     """
 
     scale: float
@@ -61,13 +120,13 @@ class View:
     first: float
     far: float
     projection: np.ndarray
-    placed: tuple[DrawItem, ...]
+    placed: Items
+    polygons: Items
     outside: int
     degenerate: int
     depth_span: float
-    bounds: tuple[float, float, float, float] | None = None
-    polygons: tuple[DrawItem, ...] = ()
-    contact: float = 0.0
+    bounds: tuple[float, float, float, float] | None
+    contact: float
 
     def least_offset(self, linear_depth: bool) -> float:
         """The offset that moves a splat back by a few steps of the depth buffer: a fraction of its distance, or for an
@@ -76,86 +135,81 @@ class View:
 
 
 def build_view(
-    scene: Scene, camera: Camera, epsilon: float, whole: ClipRange | None = None, are_split: bool = True
+    table: InstanceTable, camera: Camera, epsilon: float, whole: ClipRange | None = None, are_split: bool = True
 ) -> View:
-    """The scene's instances as seen by this camera. epsilon: how far visibility moves splats back, in radii.
+    """Instances as seen by this camera. epsilon: how far visibility moves splats back, in radii.
 
     whole: clip range of the camera that this one is cropped from, if any, so that depths are rounded alike in all parts
         of a picture.
     are_split: whether split objects are polygons near this camera and surfels beyond; they cast shadows as both.
     """
-    seen, outside, degenerate = seen_by(scene, camera)
+    seen = seen_by(table, camera)
     near, far, scale = whole or clipped(camera, seen, epsilon)
-    radii = overlapping_radii(scene)
-    placed = {Instance: [], PolygonInstance: []}
-    for instance, _, _ in seen:
-        model_view = instance.model_view(camera)
-        normal_matrix = np.linalg.inv(model_view[:3, :3]).T
-        normal_matrix /= np.abs(normal_matrix).max()
-        model_view[:3] *= scale
-        overlap = epsilon * radii.get(instance, 0.0) * scale
-        of_kind = placed[type(instance)]
-        hides_backs, limit = instance.hides_backs(camera), _split_distance(instance, camera) if are_split else 0.0
-        if limit is None:
-            continue
-        of_kind.append(DrawItem(instance, model_view, normal_matrix, hides_backs, overlap, limit * scale))
+    own, from_eye = seen.table, seen.from_eye
+    begin = _split_distances(own, from_eye, camera) if are_split else np.zeros(len(own))
+    hides_backs = own.of_kinds(lambda placed: placed.is_closed) & (seen.depths >= camera.near).all(axis=1)
+    overlaps = epsilon * table.overlaps[np.searchsorted(table.numbers, own.numbers)] * scale
+    items = Items(own, from_eye, scale, hides_backs, overlaps, begin * scale)
+    are_surfels = own.of_kinds(lambda placed: isinstance(placed.shape, Surfels))
     return View(
         scale=scale,
         near=camera.near * scale,
         first=near * scale,
         far=far * scale,
         projection=scaled_projection(camera, near, far, scale),
-        placed=tuple(placed[Instance]),
-        outside=outside,
-        degenerate=degenerate,
+        placed=items.taken(are_surfels & ~np.isnan(begin)),
+        polygons=items.taken(~are_surfels & ~np.isnan(begin)),
+        outside=seen.outside,
+        degenerate=seen.degenerate,
         depth_span=(far - near) * scale if camera.is_orthographic else far / near,
         bounds=picture_bounds(seen, camera),
-        polygons=tuple(placed[PolygonInstance]),
-        contact=(1 + 4 * epsilon) * max(radii.values(), default=0.0) * scale,
+        contact=(1 + 4 * epsilon) * float(table.overlaps.max(initial=0.0)) * scale,
     )
 
 
-def _split_distance(instance: Placed, camera: Camera) -> float | None:
-    """The distance at which the instance begins or ends, world units; 0 if it is seen everywhere, None if nowhere.
+def _split_distances(table: InstanceTable, from_eye: FromEye, camera: Camera) -> np.ndarray:
+    """(n,) the distance at which an instance begins or ends, world units; 0 if it is seen everywhere, NaN if nowhere.
 
     Splats begin before polygons end, so that their weights sum to 1 or more where polygons end (Guennebaud et al. 2006,
     section 5.1).
     """
-    if not instance.is_split or instance.shape.is_transparent:
-        return 0.0
-    end, (nearest, farthest) = instance.polygons_end(camera), instance.distances(camera)
-    if isinstance(instance, PolygonInstance):
-        return None if nearest > end or not end else end if farthest > end else 0.0
-    begin = max(end - SPLIT_OVERLAP * instance.radius, 0.0)
-    return None if farthest < begin else begin if nearest < end else 0.0
+    found = np.zeros(len(table))
+    are_split = table.of_kinds(lambda placed: placed.is_split and not placed.shape.is_transparent)
+    if not are_split.any():
+        return found
+    own, corners = table.taken(are_split), from_eye.corners[are_split]
+    nearest, farthest = _distances(corners, camera)
+    end = np.where(np.isnan(own.splits[:, 0]), ends_of_lengths(own.splits[:, 1], camera), own.splits[:, 0])
+    of_polygons = np.where((nearest > end) | (end == 0), np.nan, np.where(farthest > end, end, 0.0))
+    begin = np.maximum(end - SPLIT_OVERLAP * own.radii, 0.0)
+    of_surfels = np.where(farthest < begin, np.nan, np.where(nearest < end, begin, 0.0))
+    are_surfels = own.of_kinds(lambda placed: isinstance(placed.shape, Surfels))
+    found[are_split] = np.where(are_surfels, of_surfels, of_polygons)
+    return found
 
 
-def split_distances(placed: DrawItem, view: View) -> tuple[float, float] | None:
+def _distances(corners: np.ndarray, camera: Camera) -> tuple[np.ndarray, np.ndarray]:
+    """(n,) bounds on the distances of what is in boxes from the camera, along the view of a parallel one; world
+    units."""
+    if camera.is_orthographic:
+        return -corners[..., 2].max(axis=1), -corners[..., 2].min(axis=1)
+    nearest = np.clip(0.0, corners.min(axis=1), corners.max(axis=1))
+    return np.linalg.norm(nearest, axis=1), np.linalg.norm(corners, axis=2).max(axis=1)
+
+
+def ends_of_lengths(lengths: np.ndarray, camera: Camera) -> np.ndarray:
+    """(n,) the distances up to which objects with these `split_length`s are polygons, world units; infinite, or 0, if a
+    parallel camera shows all of them in one form."""
+    pixels = lengths * camera.pixels_per_unit()
+    return pixels if not camera.is_orthographic else np.where(pixels > 1, np.inf, 0.0)
+
+
+def split_distances(placed: DrawItem) -> tuple[float, float] | None:
     """Where the surfels of a split object begin, and where its polygons end, world units; None if all are shown."""
     if not placed.split_distance:
         return None
-    begin = placed.split_distance / view.scale
+    begin = placed.split_distance / placed.items.scale
     return begin, begin + SPLIT_OVERLAP * placed.instance.radius
-
-
-def overlapping_radii(scene: Scene) -> dict[PolygonInstance, float]:
-    """For polygons whose box touches that of surfels: the largest grain of these surfels, in world units."""
-    if not scene.polygons or not scene.surfels:
-        return {}
-    splats = [(*_world_box(instance), instance.grain) for instance in scene.surfels if len(instance.surfels)]
-    radii = {}
-    for instance in scene.polygons:
-        if len(instance.polygons):
-            low, high = _world_box(instance)
-            touching = [r for first, last, r in splats if (first <= high).all() and (low <= last).all()]
-            if touching:
-                radii[instance] = max(touching)
-    return radii
-
-
-def _world_box(instance: Placed) -> tuple[np.ndarray, np.ndarray]:
-    corners = instance.world_corners()
-    return corners.min(axis=0), corners.max(axis=0)
 
 
 def scaled_projection(camera: Camera, near: float, far: float, scale: float) -> np.ndarray:

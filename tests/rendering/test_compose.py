@@ -23,7 +23,7 @@ CHOICES = {
     "world_light",
     "lighting_picture",
 }
-CHOICES |= {"shadow_taps", "polygon_share", "polygon_blend", "sides", "rest_opacity", "faces"}
+CHOICES |= {"shadow_taps", "polygon_share", "polygon_blend", "sides", "rest_opacity", "faces", "instances"}
 #: Files of shaders/lib that two methods have in common.
 SHARED = "homogeneous", "raycast", "sprites", "surfel_quad"
 GLOBAL = re.compile(r"^(?:const )?(?:struct (\w+)|\w+ (\w+)(?:\[\d*\])?(?:\(| =|;))", re.MULTILINE)
@@ -94,10 +94,12 @@ def test_features_act_at_hooks_in_their_order_and_where_all_words_hold(tmp_path,
 
 
 def test_a_composed_text_says_where_its_parts_are_from():
-    text = compose("visibility.frag", ("object_id", "moved_back"), (("depth_format", "linear"),), origins=True)
+    chosen = ("depth_format", "linear"), ("instances", "uniform")
+    text = compose("visibility.frag", ("object_id", "moved_back"), chosen, origins=True)
     opened, closed = (re.findall(rf"^// {mark} (.*)$", text, re.MULTILINE) for mark in (">>>", "<<<"))
     assert sorted(opened) == sorted(closed) == [
         "depth_formats/linear.glsl", "features/object_id.glsl", "hosts/visibility.frag.glsl",
+        "instances/uniform.glsl",
     ]  # fmt: skip
 
 

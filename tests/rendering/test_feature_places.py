@@ -116,7 +116,7 @@ MEETINGS = {
         ("planes of polygons keep these from shadowing themselves", "features/polygons.py"),
         ("planes of splats lie beside their depths", "features/gbuffer.py"),
         ("maps are made with holes", "features/transparent_shadows.py"),
-        ("maps that frames share are made once", "renderer.py"),
+        ("what they see is found once for all samples", "plan/shared.py"),
     ),
     "silhouettes": (
         ("what is seen between rows of samples tells where a silhouette lies",

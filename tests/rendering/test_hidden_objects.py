@@ -131,7 +131,6 @@ def test_casters_behind_others_are_not_drawn_into_shadow_maps(kind, render, monk
     counts, draw_splats = [], visibility.draw_splats
 
     def counted(tile, p, target, splats, *more, **named):
-        splats = list(splats)
         counts[-1] += len(splats) if p.kind == "shadow" else 0
         yield from draw_splats(tile, p, target, splats, *more, **named)
 

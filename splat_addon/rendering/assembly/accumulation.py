@@ -78,6 +78,12 @@ def sample_camera(camera: Camera, number: int, samples: int) -> Camera:
     return _through(moved, camera.lens.points(np.array(on_lens))) if camera.lens else moved
 
 
+def around_samples(camera: Camera, samples: int) -> Camera:
+    """A camera that sees all that the samples of a picture see, in pixels of the same size."""
+    width, height = camera.size
+    return camera.cropped(-1, -1, width + 2, height + 2) if samples > 1 else camera
+
+
 def sample_blocks(samples: int, moments: int) -> list[list[int]]:
     """The sample numbers for each time of an open shutter, in temporal order, spread as evenly as possible. Raises
     ValueError for more times than samples."""

@@ -13,13 +13,13 @@ from ...hierarchy.cuts import Boxes, Split, distances
 from ..detail.levels import sight
 from ..scene.camera import Camera
 from ..scene.polygons import BLOCK
-from ..view import DrawItem, View
+from ..view import DrawItem
 
 #: For fewer triangles, looking costs more than it may save.
 _LEAST_TRIANGLES = 4 * BLOCK
 
 
-def triangle_runs(placed: DrawItem, camera: Camera, view: View) -> list[range]:
+def triangle_runs(placed: DrawItem, camera: Camera) -> list[range]:
     """The numbers of the triangles to draw, in order. Their order in the mesh decides how well blocks tell what is
     seen."""
     polygons = placed.instance.polygons
@@ -32,7 +32,7 @@ def triangle_runs(placed: DrawItem, camera: Camera, view: View) -> list[range]:
     planes = seen.planes[:4] if camera.is_orthographic else np.vstack([seen.planes[:4], seen.depth])
     is_drawn = (planes[:, :3] @ boxes.middle + planes[:, 3:] + np.abs(planes[:, :3]) @ boxes.half >= 0).all(axis=0)
     if placed.split_distance:
-        end = placed.split_distance / view.scale * (1 + 1e-5)
+        end = placed.split_distance / placed.items.scale * (1 + 1e-5)
         split = Split(placed.instance.model_view(camera)[:3], 0.0, end)
         nearest, _ = distances(boxes, replace(seen, split=split))
         is_drawn &= nearest <= end

@@ -7,7 +7,6 @@ of surfels first and then of merged nodes, in storage order.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from weakref import WeakKeyDictionary, WeakSet
 
 import numpy as np
@@ -17,6 +16,7 @@ from ...large_surfels import SAMPLE_SIZE
 from ...surfels import Surfels
 from ..scene import Instance, Scene
 from ..scene.camera import Camera
+from ..scene.table import InstanceTable
 from .stand_in import STAND_INS
 
 #: For fewer surfels than this a cut saves less than it costs.
@@ -93,13 +93,13 @@ def replaced(before: Surfels, now: Surfels) -> None:
 
 def forget_before(scene: Scene) -> None:
     """Have the hierarchies of this frame built, not fitted from those of the frame before, which merge others."""
-    for instance in scene.surfels:
-        _BEFORE.pop(instance.surfels, None)
+    for shape in scene.table.shapes:
+        _BEFORE.pop(shape, None)
 
 
 def was_drawn(scene: Scene) -> None:
     """A picture of the scene is complete."""
-    _DRAWN.update(instance.surfels for instance in scene.surfels)
+    _DRAWN.update(shape for shape in scene.table.shapes if isinstance(shape, Surfels))
 
 
 def has_levels(instance: Instance) -> bool:
@@ -116,9 +116,9 @@ def is_worth_preparing(instance: Instance) -> bool:
 
 def merging(
     scene: Scene, camera: Camera, tolerance: float, samples: int, is_repeatable: bool = False
-) -> frozenset[Instance]:
-    """The instances that are drawn as merged surfels: those whose hierarchy is there, or spares so many surfels in the
-    samples of this scene, which may be one moment of a frame, that making it pays.
+) -> frozenset[Surfels]:
+    """The sets of which instances are drawn as merged surfels: those whose hierarchy is there, or spares so many
+    surfels in the samples of this scene, which may be one moment of a frame, that making it pays.
 
     Making it also pays for sets that further pictures will show: those that were drawn before, or may be drawn again,
     unless an object's surfels are others in each frame. is_repeatable: what was drawn before does not count.
@@ -127,37 +127,33 @@ def merging(
     found = []
     if not tolerance:
         return frozenset()
-    for surfels, instances in _by_set(filter(has_levels, scene.surfels)).items():
-        spared = [_spared(instance, camera, tolerance) for instance in instances]
+    table = scene.table.taken(scene.table.of_kinds(lambda i: isinstance(i, Instance) and has_levels(i)))
+    for shape in dict.fromkeys(table.shape_of.tolist()):
+        surfels, instances = table.shapes[shape], table.taken(table.shape_of == shape)
+        spared = _spared(surfels, instances, camera, tolerance)
         if is_repeatable:
-            is_kept, work = not any(instance.may_change for instance in instances), _BUILDING
+            is_kept, work = not any(kind.placed.may_change for kind in instances.kinds), _BUILDING
         else:
             is_kept = surfels in _DRAWN or surfels not in _BEFORE
             work = _BUILDING if _BEFORE.get(surfels) is None else _REFITTING
-        pays = max(spared) >= _LEAST_SPARED and (is_kept or samples * sum(spared) >= work)
+        pays = spared.max() >= _LEAST_SPARED and (is_kept or samples * spared.sum() >= work)
         if pays or (surfels in _BUILT and not is_repeatable):
-            found += instances
+            found.append(surfels)
     return frozenset(found)
 
 
-def _by_set(instances: Iterable[Instance]) -> dict[Surfels, list[Instance]]:
-    sets = {}
-    for instance in instances:
-        sets.setdefault(instance.surfels, []).append(instance)
-    return sets
-
-
-def _spared(instance: Instance, camera: Camera, tolerance: float) -> float:
-    """The share of an instance's surfels that a cut spares, from the spacing of some of them in the picture."""
-    matrix, step = instance.model_view(camera), max(len(instance.surfels) // _SOME, 1)
-    spacing = instance.surfels.scales[::step].min(axis=1) / SAMPLE_SIZE
-    depth = -(instance.surfels.positions[::step] @ matrix[2, :3] + matrix[2, 3])
-    pixels = spacing * camera.pixels_per_unit() * float(instance.stretches[0])
+def _spared(surfels: Surfels, instances: InstanceTable, camera: Camera, tolerance: float) -> np.ndarray:
+    """(n,) the share of a set that a cut spares for each of its instances, from the spacing of some of its surfels in
+    the picture."""
+    ahead, step = instances.from_eye(camera).model_views[:, 2], max(len(surfels) // _SOME, 1)
+    spacing = surfels.scales[::step].min(axis=1) / SAMPLE_SIZE
+    depth = -(ahead[:, :3] @ surfels.positions[::step].T + ahead[:, 3:])
+    pixels = spacing * camera.pixels_per_unit() * instances.stretches[:, :1]
     if not camera.is_orthographic:
         pixels = pixels / np.maximum(depth, camera.near)
     merged = (_CUT_SPACING * pixels / tolerance) ** 2
     drawn = np.where(merged <= _FIRST_MERGED, merged, 1)
-    return float(1 - np.mean(np.where(depth > 0, drawn, 0)))
+    return 1 - np.mean(np.where(depth > 0, drawn, 0), axis=1)
 
 
 def sight(

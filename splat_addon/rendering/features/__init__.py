@@ -56,6 +56,7 @@ from . import (
     silhouettes,
     split,
     textures,
+    together,
     transparency,
     transparent_shadows,
     visibility,
@@ -100,6 +101,7 @@ FEATURES = (
     edge_threshold,
     lighting,
     sample_sum,
+    together,
 )
 
 

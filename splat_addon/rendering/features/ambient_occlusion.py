@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from ..plan.graph import Part, Pass, Texture, fill_all
+from ..plan.planning import any_of
 from ..plan.tiles import tile_edge
 from . import gbuffer, polygons
 from .drawing import LIT_HOSTS
@@ -25,7 +26,7 @@ def missing(planning) -> str:
         return f"{planning.model.name} shading does not look at the world's light"
     if not any(scene.world):
         return "the world is dark"
-    if not scene.polygons and all(instance.is_transparent for instance in scene.surfels):
+    if not scene.polygons and not any_of(lambda instance: not instance.is_transparent, planning.surfels):
         return "transparent layers have none, and nothing is opaque"
     return ""
 
@@ -64,7 +65,7 @@ def _depths(planning) -> Pass:
     why = f"surfaces within {settings.ambient_occlusion:g} keep the world's light from one another"
     if pixels:
         why += f"; the picture is drawn in tiles, so they are looked for up to {pixels} pixels away"
-    if any(instance.is_transparent for instance in planning.scene.surfels):
+    if any_of(lambda instance: instance.is_transparent, planning.surfels):
         why += "; transparent layers neither have it nor cause it"
     own = Part(
         "ambient_occlusion",

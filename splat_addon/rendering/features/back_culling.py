@@ -10,7 +10,7 @@ from .drawing import SPLAT_HOSTS
 def passes(planning):
     """No passes; records whether there are such splats, and how many."""
     if planning.shown and planning.settings.culls_backs:
-        count = planning.facts["culled_of"] = sum(len(instance.surfels) for instance in planning.scene.surfels)
+        count = planning.facts["culled_of"] = sum(kind.count * len(kind.placed.surfels) for kind in planning.surfels)
         backs = planning.facts["culled"] = sum(i.backs(planning.camera) for i in planning.scene.surfels)
         planning.has("BACK_CULLING", f"{backs:,} of {count:,} splats show their backs, and are asked to be left out")
     return ()

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from ...large_surfels import LARGE_WEIGHT, STEPS_OF_SAMPLES
 from ..plan.graph import Part
-from ..plan.planning import counted
+from ..plan.planning import count, counted
 from .drawing import SPLAT_HOSTS
 
 _HOSTS = (*SPLAT_HOSTS, "visibility.frag")
@@ -15,7 +15,7 @@ CONSTANTS = {"STEPS_OF_SAMPLES": STEPS_OF_SAMPLES, "LARGE_WEIGHT": LARGE_WEIGHT}
 
 
 def _count(planning) -> int:
-    return sum(instance.surfels.blend_depth is not None for instance in planning.scene.surfels)
+    return count(lambda instance: instance.surfels.blend_depth is not None, planning.surfels)
 
 
 passes, is_present = counted(

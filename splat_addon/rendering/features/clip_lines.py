@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from ...large_surfels import SAMPLE_SIZE
 from ..plan.graph import Part
-from ..plan.planning import counted
+from ..plan.planning import count, counted
 from .drawing import SPLAT_HOSTS
 
 CONSTANTS = {"SAMPLE_SIZE": SAMPLE_SIZE}
@@ -31,7 +31,7 @@ ARRIVES = {"clip_lines": lambda instance: instance.surfels.clipped_count > 0}
 
 
 def _count(planning) -> int:
-    return sum(instance.surfels.clipped_count > 0 for instance in planning.scene.surfels)
+    return count(lambda instance: instance.surfels.clipped_count > 0, planning.surfels)
 
 
 passes, is_present = counted(

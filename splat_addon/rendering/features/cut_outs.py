@@ -8,7 +8,7 @@ layers.
 from __future__ import annotations
 
 from ..plan.graph import Part
-from ..plan.planning import counted
+from ..plan.planning import count, counted
 from . import silhouettes
 from .textures import ATLAS, OF_TRIANGLES
 
@@ -16,7 +16,7 @@ _VARYINGS = (("smooth", "vec3", "cut_place"), ("smooth", "vec3", "cut_eye"), *OF
 
 
 def _count(planning) -> int:
-    return sum(instance.is_cut_out for instance in planning.scene.polygons)
+    return count(lambda instance: instance.is_cut_out, planning.polygons)
 
 
 passes, is_present = counted(

@@ -18,7 +18,7 @@ VALUES = {"depth_range": ("vec2", lambda tile: [d * tile.view.scale for d in til
 
 def extent(planning) -> DepthExtent:
     """The depth extent of everything that may be in the picture."""
-    return depth_extent(planning.scene, planning.camera, planning.settings.epsilon)
+    return depth_extent(planning.scene.table, planning.around, planning.settings.epsilon)
 
 
 def linear(planning) -> tuple[bool, str]:

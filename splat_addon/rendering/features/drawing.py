@@ -15,9 +15,8 @@ from ..device.interface import Texture as DeviceTexture
 from ..methods.method import RASTERIZERS
 from ..plan.graph import Pass, Pause
 from ..plan.uniforms import DRAW, std140
-from ..scene.light import MAX_LIGHT_SETS
 from ..upload.storages import STORAGES, get_storage
-from ..view import DrawItem
+from ..view import DrawItem, Items
 
 if TYPE_CHECKING:
     from ..plan.executor import TileContext
@@ -46,75 +45,101 @@ DRAWN = {name: partial(_stored, sampler=name) for storage in STORAGES.values() f
 ARRIVES = {name: lambda instance: True for storage in STORAGES.values() for name in storage.samplers}
 
 
-def draw_splats(
-    tile: TileContext, p: Pass, target, placed_ones: Iterable[DrawItem], vertex, *variants, viewport=None
-) -> Generator[Pause]:
-    """Draw each instance, part by part; pauses after each draw call.
+def draw_splats(tile: TileContext, p: Pass, target, items: Items, vertex, *variants, viewport=None) -> Generator[Pause]:
+    """Draw instances, many at once where they are alike, or part by part; pauses after each draw call.
 
     variants: of the pass's programs. viewport: as `Device.draw_triangles` takes it.
     """
-    parts = (part for placed in placed_ones for part in tile.in_parts(placed))
-    yield from draw_parts(tile, p, target, parts, vertex, *variants, viewport=viewport)
+    programs = Programs(tile, p, vertex, *variants)
+    for batch in tile.batches(items):
+        if len(batch) == 1:
+            yield from draw_parts(tile, p, target, tile.in_parts(batch.item(0)), programs, viewport)
+            continue
+        surfels = batch.item(0).instance.surfels
+        clipped, count = surfels.clipped_count, len(surfels)
+        for more, first, end in (((), clipped, count), (("clipped",), 0, clipped)):
+            if first < end:
+                program = yield from programs.of("together", *more)
+                yield from _draw_together(tile, p, target, batch, program, range(first, end), viewport)
 
 
 def draw_parts(
-    tile: TileContext, p: Pass, target, parts: Iterable[tuple[DrawItem, Cut]], vertex, *variants, viewport=None
+    tile: TileContext, p: Pass, target, parts: Iterable[tuple[DrawItem, Cut]], programs: Programs, viewport=None
 ) -> Generator[Pause]:
     """Draw the parts of `TileContext.in_parts`, their splats with clip lines, which are stored first, apart."""
-    programs = {}
     for placed, cut in parts:
         own = () if cut.numbers is None else ("cut",)
         for more, first, end in ((own, cut.clipped, cut.count), ((*own, "clipped"), 0, cut.clipped)):
             if first < end:
-                if more not in programs:
-                    programs[more] = tile.program(p, vertex, *variants, *more)
-                    # compiling it may have taken this call's time
-                    yield Pause()
-                which = range(first, end)
-                yield from _draw(tile, p, target, placed, tile.settings.epsilon, programs[more], which, viewport)
+                program = yield from programs.of(*more)
+                yield from _draw(tile, p, target, placed, program, range(first, end), viewport)
 
 
 def draw_polygons(
-    tile: TileContext, p: Pass, target, placed_ones: Iterable[DrawItem], vertex, *variants, viewport=None
+    tile: TileContext, p: Pass, target, items: Items, vertex, *variants, viewport=None
 ) -> Generator[Pause]:
-    """Draw polygons; epsilon: how far behind polygons splats may lie. Those with holes have a program of their own."""
-    programs = {}
-    for placed in placed_ones:
+    """Draw polygons. Those with holes have a program of their own."""
+    programs = Programs(tile, p, vertex, *variants)
+    for batch in tile.batches(items):
+        placed = batch.item(0)
         kinds = {"cut_out": placed.instance.is_cut_out, "bumped": placed.instance.is_bumped}
         more = tuple(kind for kind, is_so in kinds.items() if is_so)
-        program = programs[more] = programs.get(more) or tile.program(p, vertex, *variants, *more)
-        for which in triangle_runs(placed, tile.camera, tile.view):
-            yield from _draw(tile, p, target, placed, placed.overlap, program, which, viewport)
+        if len(batch) == 1:
+            program = yield from programs.of(*more)
+            for which in triangle_runs(placed, tile.camera):
+                yield from _draw(tile, p, target, placed, program, which, viewport)
+        else:
+            program, which = (yield from programs.of("together", *more)), range(placed.instance.polygons.triangles)
+            yield from _draw_together(tile, p, target, batch, program, which, viewport)
 
 
-def _draw(
-    tile, p, target, placed: DrawItem, epsilon: float, program: Pipeline, which: range, viewport
-) -> Generator[Pause]:
-    """Draw. which: numbers of the triangles."""
-    blocks = tile.blocks(program, draw_block(tile, placed, epsilon))
-    textures = tile.textures(p, program, placed)
+class Programs:
+    """The programs of a pass, which are found once. variants: of all of them."""
+
+    def __init__(self, tile: TileContext, p: Pass, vertex: str, *variants: str):
+        self._make = partial(tile.program, p, vertex, *variants)
+        self._made: dict[tuple[str, ...], Pipeline] = {}
+
+    def of(self, *more: str) -> Generator[Pause, None, Pipeline]:
+        """The program of further variants; pauses, because compiling it may have taken this call's time."""
+        if more not in self._made:
+            self._made[more] = self._make(*more)
+            yield Pause()
+        return self._made[more]
+
+
+def _draw(tile, p, target, placed: DrawItem, program: Pipeline, which: range, viewport) -> Generator[Pause]:
+    """Draw one instance. which: numbers of the triangles."""
+    blocks, textures = tile.blocks(program, placed, draw_block(tile, placed)), tile.textures(p, program, placed)
     for start in which[::AT_ONCE]:
         count = min(AT_ONCE, which.stop - start)
         tile.resources.device.draw_triangles(program, target, count, blocks, textures, viewport, start)
         yield Pause(target)
 
 
-def draw_block(tile: TileContext, placed: DrawItem, epsilon: float) -> np.ndarray:
+def _draw_together(tile, p, target, batch: Items, program: Pipeline, which: range, viewport) -> Generator[Pause]:
+    """Draw instances of one kind. which: numbers of the triangles of each."""
+    placed, at_once = batch.item(0), max(AT_ONCE // len(which), 1)
+    textures = tile.textures(p, program, placed)
+    for start in range(0, len(batch), at_once):
+        triangles = min(at_once, len(batch) - start) * len(which)
+        blocks = tile.blocks(program, placed, draw_block(tile, placed, start, which.start, len(which)))
+        tile.resources.device.draw_triangles(program, target, triangles, blocks, textures, viewport)
+        yield Pause(target)
+
+
+def draw_block(
+    tile: TileContext, placed: DrawItem, first_instance: int = 0, first: int = 0, stride: int = 1
+) -> np.ndarray:
     """The values of `uniforms.DRAW`."""
-    normal_matrix = np.eye(4)
-    normal_matrix[:3, :3] = placed.normal_matrix
     values = (
-        placed.model_view,
-        normal_matrix,
-        np.eye(MAX_LIGHT_SETS)[placed.instance.light_set],
-        float(np.sign(np.linalg.det(placed.normal_matrix))),
-        placed.hides_backs,
-        epsilon,
-        max(tile.view.least_offset(tile.plan.linear_depth), placed.setback),
-        *tile.identities.slots(placed.instance),
-        placed.split_distance,
+        tile.settings.epsilon,
+        max(tile.view.least_offset(tile.plan.linear_depth), placed.items.setback),
         tile.first_merged(placed),
         tile.rows_without_lines(placed),
+        first_instance,
+        first,
+        stride,
     )
     return std140(DRAW, values)
 

@@ -11,6 +11,7 @@ from collections import Counter
 from functools import partial
 
 from ..plan.graph import Part, Texture
+from ..plan.planning import any_of
 from ..scene import Finish
 from ..shading_models.brdf_table import edge_texels
 from ..upload.packing import MAX_FINISHES, finish_matrix
@@ -34,7 +35,10 @@ _TABLES = {"specular_tint": "edge_table"}
 
 def found(planning) -> tuple[Finish, ...]:
     """The finishes that the frame tells apart, the most common first; none if all are plain."""
-    counted = Counter(material.finish for placed in planning.shown for material in placed.materials)
+    counted = Counter()
+    for placed, number in planning.scene.table.kinds:
+        for material in placed.materials:
+            counted[material.finish] += number
     kept = tuple(finish for finish, _ in counted.most_common(MAX_FINISHES))
     has_any = any(finish.layers for finish in kept)
     return kept if has_any and (len(kept) == 1 or _has_room(planning)) else ()
@@ -42,7 +46,7 @@ def found(planning) -> tuple[Finish, ...]:
 
 def _has_room(planning) -> bool:
     """Whether the other sums of a frame leave room for one more."""
-    has_layers = any(instance.is_transparent for instance in planning.scene.surfels)
+    has_layers = any_of(lambda instance: instance.is_transparent, planning.surfels)
     kinds = ("opaque", "layer") if has_layers else ("opaque",)
     sums = 2 + any(gbuffer.depths_are_apart(planning, kind) for kind in kinds) + sum(materials.differ(planning))
     return sums + lights.are_linked(planning) + outputs.counts_splats(planning) < outputs.MAX_COLORS
@@ -58,7 +62,7 @@ def passes(planning):
     """No passes; records what the frame has."""
     planning.facts["finishes"] = kept = planning.find(found)
     planning.facts["summed_finishes"] = summed(planning)
-    every = {material.finish for placed in planning.shown for material in placed.materials}
+    every = {material.finish for kind in planning.scene.table.kinds for material in kind.placed.materials}
     if not kept and any(finish.layers for finish in every):
         planning.skip("finishes", _NO_ROOM)
         return ()

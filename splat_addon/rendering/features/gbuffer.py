@@ -4,14 +4,15 @@
 from __future__ import annotations
 
 from ..plan.graph import Part, Pass, Texture
+from ..plan.planning import count
 from . import depth_format, lit_splats, shadows, visibility
 from .drawing import LIT_HOSTS, draw_splats
 from .rasterizers import rasterized
 
 NAMES = ("gbuffer", "depth_in_normals", "gbuffer_depth")
 VALUES = {
-    "color_scale": ("float", lambda tile: tile.color_scale),
-    "color_unit": ("float", lambda tile: 1 / tile.color_scale),
+    "color_scale": ("float", lambda tile: tile.shared.color_scale),
+    "color_unit": ("float", lambda tile: 1 / tile.shared.color_scale),
 }
 
 COLOR = Texture("gbuffer_color", is_multisampled=True, is_sum=True)
@@ -81,11 +82,11 @@ def parts(planning, p):
 
 
 def _why(planning) -> str:
-    surfels = planning.scene.surfels
-    if not any(len(instance.surfels) for instance in surfels):
+    if not planning.surfels:
         return "there are no splats: their sums stay empty"
-    textured = sum(instance.is_textured for instance in surfels)
-    looked_up = f"; {textured} of {len(surfels)} instances look textures up" if textured else ""
+    textured = count(lambda instance: instance.is_textured, planning.surfels)
+    every = count(lambda instance: True, planning.surfels)
+    looked_up = f"; {textured} of {every} instances look textures up" if textured else ""
     return f"overlapping splats blend by {planning.method.name}{looked_up}"
 
 
@@ -94,6 +95,6 @@ def run(tile, p: Pass):
     target, vertex = tile.target(p), p.host.replace(".frag", ".vert")
     target.clear(color=0.0, depth=1.0 if p.state["depth_write"] else None)
     drawn = tile.drawn_by(p)
-    yield from draw_splats(tile, p, target, [d for d in drawn if not d.instance.is_textured], vertex)
-    yield from draw_splats(tile, p, target, [d for d in drawn if d.instance.is_textured], vertex, "textured")
+    yield from draw_splats(tile, p, target, drawn.of_kinds(lambda i: not i.is_textured), vertex)
+    yield from draw_splats(tile, p, target, drawn.of_kinds(lambda i: i.is_textured), vertex, "textured")
     return target

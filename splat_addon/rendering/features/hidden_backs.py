@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 from ..plan.graph import Part
-from ..plan.planning import counted
+from ..plan.planning import count, counted
 from .drawing import SPLAT_HOSTS
 
 
 def _count(planning) -> int:
-    return sum(i.surfels.hidden_back is not None and not i.is_transparent for i in planning.scene.surfels)
+    return count(lambda i: i.surfels.hidden_back is not None and not i.is_transparent, planning.surfels)
 
 
 passes, is_present = counted(

@@ -9,7 +9,7 @@ detail, single blocks are left out in the same way (`hidden_blocks`).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -17,8 +17,8 @@ from ..culling.cover import COVER_CELL, Cover
 from ..culling.hidden_blocks import BlocksFrontToBack
 from ..methods import get_method
 from ..plan.graph import Part, Pass, Texture, of_samples
-from ..scene import Instance
-from ..view import DrawItem
+from ..scene.table import Kind
+from ..view import DrawItem, Items
 from . import levels
 
 CONSTANTS = {"COVER_CELL": COVER_CELL}
@@ -54,7 +54,7 @@ def passes(planning):
 def search(planning, seen: Texture, rows: int) -> Pass | None:
     """The pass that finds how far each cell of the picture sees, if it may pay. seen: the depth that visibility writes.
     rows: its number of rows per row of samples."""
-    opaque = [instance for instance in planning.scene.surfels if not instance.is_transparent]
+    opaque = [kind for kind in planning.surfels if not kind.placed.is_transparent]
     if not may_hide(planning, opaque):
         planning.skip(
             "hidden objects",
@@ -65,17 +65,24 @@ def search(planning, seen: Texture, rows: int) -> Pass | None:
     if planning.method.sprites_hide or planning.settings.multisampling:
         planning.skip("hidden objects", "several depths in a sample, or colours with them, depend on all objects")
         return None
-    planning.has("HIDDEN_OBJECTS", f"some of {len(opaque)} objects, or parts of them, may be behind others")
+    planning.has(
+        "HIDDEN_OBJECTS",
+        f"some of {sum(kind.count for kind in opaque)} objects, or parts of them, may be behind others",
+    )
     planning.facts["covering_depth"] = seen
     return looking("hidden_objects", FARTHEST, rows)
 
 
-def may_hide(planning, opaque: list[Instance]) -> bool:
-    """Whether these objects are so many that some of them may be behind others, or so large that parts may be."""
-    with_levels = planning.find(levels.merging)
-    is_large = any(instance in with_levels and len(instance.surfels) >= LEAST_SURFELS for instance in opaque)
-    is_many = len(opaque) >= LEAST_OBJECTS and sum(len(instance.surfels) for instance in opaque) >= LEAST_SURFELS
-    return is_many or is_large
+def may_hide(planning, opaque: list[Kind]) -> bool:
+    """Whether objects of these kinds are so many that some of them may be behind others, or so large that parts may
+    be."""
+    with_levels, sizes = planning.find(levels.merging), [len(kind.placed.surfels) for kind in opaque]
+    is_large = any(
+        k.placed.surfels in with_levels and size >= LEAST_SURFELS for k, size in zip(opaque, sizes, strict=True)
+    )
+    objects = sum(kind.count for kind in opaque)
+    surfels = sum(kind.count * size for kind, size in zip(opaque, sizes, strict=True))
+    return is_large or (objects >= LEAST_OBJECTS and surfels >= LEAST_SURFELS)
 
 
 def looking(name: str, farthest: Texture, rows: int = 1) -> Pass:
@@ -94,49 +101,48 @@ def _run_by_visibility(tile, p: Pass):
     raise AssertionError("The visibility pass runs this one itself.")
 
 
-def front_to_back(tile, p: Pass, splats: Iterable[DrawItem], viewport=None) -> Iterator[list[DrawItem]]:
+def front_to_back(tile, p: Pass, splats: Items, viewport=None) -> Iterator[Items]:
     """The splats that a pass draws, in groups that must be drawn before the next is requested. What is behind what was
-    drawn is left out: objects are added to `tile.hidden`, and of large ones `tile.shown_blocks` keeps what is seen.
+    drawn is left out: objects are marked in `tile.hidden`, and of large ones `tile.shown_blocks` keeps what is seen.
 
     viewport: the part of the depth that is drawn into; None for all of it.
     """
-    waiting = list(splats)
     if p.each is None:
-        yield waiting
+        yield splats
         return
-    large = [BlocksFrontToBack(tile, placed) for placed in waiting if _is_large(tile, placed)]
+    large = [BlocksFrontToBack(tile, placed) for placed in tile.with_levels(splats) if _is_large(tile, placed)]
     for each in large:
         each.show_next(_samples(tile))
-    yield from _objects_front_to_back(tile, p, waiting, viewport)
-    while large := [each for each in large if each.placed not in tile.hidden and each.are_waiting.any()]:
+    yield from _objects_front_to_back(tile, p, splats, viewport)
+    while large := [each for each in large if not tile.hidden[each.placed.number] and each.are_waiting.any()]:
         cover = _cover(tile, p.each, viewport)
         for each in large:
             each.hide_behind(cover)
             each.show_next(_samples(tile))
-        yield [each.placed for each in large]
+        yield splats.taken(np.array([each.placed.row for each in large]))
         for each in large:
             each.show_all()
 
 
-def _objects_front_to_back(tile, p: Pass, waiting: list[DrawItem], viewport) -> Iterator[list[DrawItem]]:
-    if len(waiting) < LEAST_OBJECTS:
-        yield waiting
+def _objects_front_to_back(tile, p: Pass, splats: Items, viewport) -> Iterator[Items]:
+    if len(splats) < LEAST_OBJECTS:
+        yield splats
         return
-    counts = {placed: tile.drawn_count(placed) for placed in waiting}
-    total, drawn = sum(counts.values()), 0
-    waiting.sort(key=lambda placed: float((-placed.instance.corners(tile.camera)[:, 2]).min()))
+    waiting = splats.taken(np.argsort(splats.nearest, kind="stable"))
+    counts, drawn = tile.drawn_counts(waiting), 0
+    total = counts.sum()
     for share in _SHARES if total >= LEAST_SURFELS else ():
-        group = []
-        while waiting and drawn < share * total:
-            group.append(waiting.pop(0))
-            drawn += counts[group[-1]]
-        yield group
-        cover = _cover(tile, p.each, viewport)
-        hidden = _hidden(waiting, cover, tile)
-        if not hidden:
+        before = drawn + np.cumsum(counts) - counts
+        first = int(np.searchsorted(before, share * total))
+        drawn += counts[:first].sum()
+        yield waiting.taken(np.arange(first))
+        left = np.arange(first, len(waiting))
+        are_hidden = _are_hidden(waiting.taken(left), _cover(tile, p.each, viewport), tile)
+        if not are_hidden.any():
+            waiting = waiting.taken(left)
             break
-        tile.hidden.update(hidden)
-        waiting = [placed for placed in waiting if placed not in tile.hidden]
+        tile.hidden[waiting.table.numbers[left[are_hidden]]] = True
+        waiting, counts = waiting.taken(left[~are_hidden]), counts[left[~are_hidden]]
     yield waiting
 
 
@@ -153,25 +159,24 @@ def _cover(tile, p: Pass, viewport) -> Cover:
     return Cover(cells, tile.camera, tile.view.scale, tile.plan.samples, begin)
 
 
-def _hidden(waiting: list[DrawItem], cover: Cover, tile) -> list[DrawItem]:
-    """The objects whose boxes are beyond what every cell under them sees."""
-    if not waiting:
-        return []
-    corners = np.stack([placed.instance.corners(tile.camera) for placed in waiting], axis=-1)
-    low, high = corners.min(axis=0), corners.max(axis=0)
+def _are_hidden(waiting: Items, cover: Cover, tile) -> np.ndarray:
+    """(n,) bool: the objects whose boxes are beyond what every cell under them sees."""
+    if not len(waiting):
+        return np.zeros(0, bool)
+    corners = waiting.from_eye.corners
+    low, high = corners.min(axis=1).T, corners.max(axis=1).T
     # what merged surfels may be off by
     off = tile.settings.detail_tolerance / tile.camera.pixels_per_unit()
     off = off * (1.0 if tile.camera.is_orthographic else np.maximum(-high[2], 0.0))
-    are_merged = np.array([tile.levels(placed.instance) is not None for placed in waiting])
-    nearer = _NEARER * np.array([placed.instance.radius for placed in waiting]) + off * are_merged
-    are_hidden = cover.hides((low + high) / 2, (high - low) / 2, nearer, _BESIDE)
-    return [waiting[k] for k in np.flatnonzero(are_hidden)]
+    are_merged = waiting.table.of_kinds(lambda placed: tile.levels(placed) is not None)
+    nearer = _NEARER * waiting.table.radii + off * are_merged
+    return cover.hides((low + high) / 2, (high - low) / 2, nearer, _BESIDE)
 
 
 def _is_large(tile, placed: DrawItem) -> bool:
     """Whether blocks of an object are looked for, too. The method must not show splats far beside their ellipses."""
-    has_blocks = tile.levels(placed.instance) is not None and not get_method(tile.plan.method).widens
-    return has_blocks and tile.drawn_count(placed) >= max(LEAST_SURFELS, LEAST_PER_SAMPLE * _samples(tile))
+    is_drawn_at_once = tile.drawn_count(placed) < max(LEAST_SURFELS, LEAST_PER_SAMPLE * _samples(tile))
+    return not is_drawn_at_once and not get_method(tile.plan.method).widens
 
 
 def _samples(tile) -> int:

@@ -6,7 +6,11 @@ It is one level of a hierarchical z-buffer (Greene, Kass, Miller 1993).
 
 from __future__ import annotations
 
+import numpy as np
+
+from ..culling.backs import show_backs
 from ..plan.graph import Part, Pass, Texture, fill, of_samples
+from ..scene import Instance
 from . import depth_bounds
 
 #: Samples along each side of a cell.
@@ -29,8 +33,9 @@ def pays(planning) -> str:
     if not planning.method.culls_hidden:
         planning.skip(FARTHEST.name, f"{planning.method.name} draws hidden splats too, as its paper does")
         return ""
-    opaque = [i for i in planning.scene.surfels if len(i.surfels) and not i.is_transparent]
-    showing = sum(instance.shows_backs(planning.camera) for instance in opaque)
+    table = planning.scene.table
+    opaque = table.taken(table.of_kinds(lambda i: isinstance(i, Instance) and not i.is_transparent))
+    showing = np.count_nonzero(show_backs(opaque, planning.camera))
     if not showing:
         planning.skip(FARTHEST.name, "nothing opaque shows its backs, which most of what is hidden would be")
         return ""

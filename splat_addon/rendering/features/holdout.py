@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ..plan.graph import Part, Pass, Texture
+from ..plan.planning import count
 from . import silhouettes, visibility
 from .drawing import LIT_HOSTS, SPLAT_HOSTS
 
@@ -17,11 +18,11 @@ def _count(planning) -> int:
     """Number of holdouts; 0 for methods in which the nearest splat wins, because their only depth is that splat's."""
     if planning.method.rasterizer == "point_sprite":
         return 0
-    return sum(instance.is_holdout for instance in planning.shown)
+    return count(lambda instance: instance.is_holdout, planning.scene.table.kinds)
 
 
 def passes(planning):
-    cutting = sum(instance.is_holdout for instance in planning.shown)
+    cutting = count(lambda instance: instance.is_holdout, planning.scene.table.kinds)
     if cutting and not _count(planning):
         planning.skip("holdout", f"of {planning.method.name} objects that cut holes are drawn as others are")
     elif cutting:
@@ -56,5 +57,5 @@ def draws(tile, p: Pass, instance) -> bool:
 def run(tile, p):
     """Fill the depth texture: where a hole is visible, with exactly the depth of the visibility pass."""
     kinds = {name: getattr(tile.view, name) for name in ("placed", "polygons")}
-    cutting = {name: tuple(d for d in placed if d.instance.is_holdout) for name, placed in kinds.items()}
+    cutting = {name: items.of_kinds(lambda i: i.is_holdout) for name, items in kinds.items()}
     return visibility.run(replace(tile, view=replace(tile.view, **cutting)), p)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from ..detail import levels
 from ..plan.graph import Part
+from ..plan.planning import count
 from ..upload.cuts import NUMBERS_PER_ROW
 from . import lit_splats
 from .drawing import SPLAT_HOSTS
@@ -19,7 +20,7 @@ DRAWN = {"drawn_splats": lambda tile, placed: tile.cuts(placed)[placed.part].num
 
 
 def merging(planning) -> frozenset:
-    """The instances that may have merged surfels in the picture; only these may have them in shadow maps."""
+    """The sets that may have merged surfels in the picture; only these may have them in shadow maps."""
     if planning.find(lit_splats.wanted):
         return frozenset()
     tolerance = planning.settings.detail_tolerance
@@ -35,7 +36,8 @@ def passes(planning):
             planning.skip("levels of detail", "every surfel is lit by itself")
         elif found := planning.find(merging):
             planning.facts["levels"] = found
-            planning.has("LEVELS", f"{len(found)} instances may have surfels too small to be seen one by one")
+            instances = count(lambda instance: instance.surfels in found, planning.surfels)
+            planning.has("LEVELS", f"{instances} instances may have surfels too small to be seen one by one")
         else:
             planning.skip("levels of detail", f"no instance of {levels.LEAST_SURFELS:,} surfels or more is worth it")
     return ()

@@ -13,7 +13,7 @@ from ..scene import Instance
 from ..shading_models import ShadingModel, get_shading_model
 from ..upload.packing import SPLATS_PER_ROW, row_count
 from ..upload.parts import largest_part
-from .drawing import LIT_HOSTS, SPLAT_HOSTS, draw_block, draw_parts, storage_samplers
+from .drawing import LIT_HOSTS, SPLAT_HOSTS, Programs, draw_block, draw_parts, storage_samplers
 
 
 def _of_splats(plan, pixels: tuple[int, int]) -> tuple[int, int]:
@@ -51,12 +51,12 @@ def model_in(planning, p: Pass) -> ShadingModel:
 
 def each(planning) -> Pass | None:
     """The pass that lights the splats of an instance before they are summed."""
-    return light(planning, planning.scene.surfels) if planning.find(wanted) else None
+    return light(planning, planning.surfels) if planning.find(wanted) else None
 
 
-def light(planning, instances) -> Pass:
+def light(planning, kinds) -> Pass:
     """Light the splats of one instance, or part of it; the texture has one texel per splat of the largest one."""
-    rows = max(row_count(largest_part(len(instance.surfels))) for instance in instances)
+    rows = max((row_count(largest_part(len(kind.placed.surfels))) for kind in kinds), default=1)
     planning.facts["lit_rows"] = max(rows, planning.facts.get("lit_rows", 0))
     own = Part("lit_splats", inputs=storage_samplers(planning.settings.storage), writes=(LIT,))
     return Pass("light_splats", "each splat is lit by itself", "lit_splats.frag", run, (own,), "rest")
@@ -76,14 +76,14 @@ def parts(planning, p):
 def run(tile, p: Pass):
     """Fill the sums, one instance or part of one after another; its splats are lit first, one fragment each, at the
     texel of its place among those that are drawn."""
-    target, lit, programs = tile.target(p), tile.target(p.each), {}
+    target, lit = tile.target(p), tile.target(p.each)
+    lights, programs = Programs(tile, p.each, "fullscreen.vert"), Programs(tile, p, p.host.replace(".frag", ".vert"))
     target.clear(color=0.0, depth=1.0 if p.state["depth_write"] else None)
     for placed, cut in (part for each in tile.drawn_by(p) for part in tile.in_parts(each)):
-        own = () if cut.numbers is None else ("cut",)
-        light = programs[own] = programs.get(own) or tile.program(p.each, "fullscreen.vert", *own)
+        light = yield from lights.of(*(() if cut.numbers is None else ("cut",)))
         textures = tile.textures(p.each, light, placed)
-        blocks = tile.blocks(light, draw_block(tile, placed, tile.settings.epsilon))
+        blocks = tile.blocks(light, placed, draw_block(tile, placed))
         viewport = 0, 0, SPLATS_PER_ROW, row_count(cut.count)
         tile.resources.device.draw_triangles(light, lit, 1, blocks, textures, viewport)
-        yield from draw_parts(tile, p, target, [(placed, cut)], p.host.replace(".frag", ".vert"))
+        yield from draw_parts(tile, p, target, [(placed, cut)], programs)
     return target

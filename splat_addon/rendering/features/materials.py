@@ -15,7 +15,8 @@ EMISSION = Texture("gbuffer_emission", is_multisampled=True)
 
 def shared(planning):
     """The material and the emission that all surfels share; None for each that differs."""
-    return shared_material(planning.shown), shared_emission(planning.shown)
+    each = tuple(kind.placed for kind in planning.scene.table.kinds)
+    return shared_material(each), shared_emission(each)
 
 
 def _material(tile):

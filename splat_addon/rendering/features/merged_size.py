@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from ...hierarchy.nodes import MERGED_WEIGHT
 from ..plan.graph import Part
+from ..plan.planning import any_of
 from . import levels
 from .drawing import SPLAT_HOSTS
 
@@ -13,7 +14,7 @@ CONSTANTS = {"MERGED_WEIGHT": MERGED_WEIGHT}
 
 
 def is_present(planning) -> bool:
-    return levels.is_present(planning) or any(instance.is_merged for instance in planning.scene.surfels)
+    return levels.is_present(planning) or any_of(lambda i: i.is_merged, planning.surfels)
 
 
 def parts(planning, p):

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ..plan.graph import Part
-from ..plan.planning import counted
+from ..plan.planning import count, counted
 from .textures import ATLAS, PLANE, pixel_variance
 
 DRAWN = {"polygon_bumps": lambda tile, placed: tile.resources.polygon_bumps(placed.instance.polygons)}
@@ -21,7 +21,7 @@ _VARYINGS = (
 
 
 def _count(planning) -> int:
-    return sum(instance.is_bumped for instance in planning.scene.polygons)
+    return count(lambda instance: instance.is_bumped, planning.polygons)
 
 
 passes, is_present = counted(

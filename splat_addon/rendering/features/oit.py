@@ -22,7 +22,7 @@ def passes_of_rest(planning, peeled: Texture, layers: Texture) -> tuple[Pass, ..
     shade = Part("oit", reads=(ACCUM, WEIGHT, gbuffer.depth_sum(planning)), writes=(lighting.SHADED,))
     put = Part("oit", reads=(lighting.SHADED, peeled), writes=(layers,), constants=samples)
     peel = Part("oit", reads=(lighting.SHADED,), updates=(peeled,))
-    transparent = [instance for instance in planning.scene.surfels if instance.is_transparent]
+    transparent = [kind for kind in planning.surfels if kind.placed.is_transparent]
     run, each = lit_splats.run, lit_splats.light(planning, transparent)
     return (
         Pass("rest", "all that is left is added up", host, run, rest, "rest", state, each=each),

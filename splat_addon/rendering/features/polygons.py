@@ -6,8 +6,9 @@ Shading blends them with the means of the splats.
 
 from __future__ import annotations
 
+import numpy as np
+
 from ..plan.graph import Part, Pass, Texture
-from ..view import overlapping_radii
 from . import depth_format, finish, lights, materials, shadows
 from .drawing import LIT_HOSTS, draw_polygons
 
@@ -30,7 +31,7 @@ def passes(planning):
     if not among:
         planning.skip("polygons", "the scene has none")
         return
-    touching = len(overlapping_radii(planning.scene))
+    touching = np.count_nonzero(planning.scene.table.overlaps)
     why = f"{len(among)} instances are polygons, of which {touching} touch surfels and may blend with them"
     varyings = ("float", "depth_at"), ("vec3", "corner_normal"), ("vec3", "corner_color")
     own = Part(
@@ -93,7 +94,8 @@ def run(tile, p: Pass):
     """Fill the polygons' textures."""
     target = tile.target(p)
     target.clear(color=0.0, depth=1.0)
-    drawn = [d for d in tile.view.polygons if not d.instance.is_holdout]
-    yield from draw_polygons(tile, p, target, [d for d in drawn if not d.instance.is_textured], "polygons.vert")
-    yield from draw_polygons(tile, p, target, [d for d in drawn if d.instance.is_textured], "polygons.vert", "textured")
+    drawn = tile.view.polygons.of_kinds(lambda i: not i.is_holdout)
+    plain, textured = (drawn.of_kinds(lambda i, are=are: i.is_textured is are) for are in (False, True))
+    yield from draw_polygons(tile, p, target, plain, "polygons.vert")
+    yield from draw_polygons(tile, p, target, textured, "polygons.vert", "textured")
     return target

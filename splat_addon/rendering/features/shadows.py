@@ -7,6 +7,7 @@ import math
 from dataclasses import replace
 
 from ..plan.graph import Part, Pass, Texture
+from ..plan.planning import any_of
 from ..scene.camera import Camera
 from ..scene.light import pack_lights
 from ..shadows.contents import contents
@@ -59,7 +60,7 @@ _TURN = (math.sqrt(5) - 1) / 2
 VALUES = {"shadow_turn": ("float", lambda tile: (0.125 + _TURN * tile.camera.sample) % 1)}
 INPUTS = {
     "shadow_maps": lambda t: t.resources.data(
-        pack_shadow_maps(t.plan.facts["shadow_maps"], t.shadow_views, t.camera, t.view.scale)
+        pack_shadow_maps(t.plan.facts["shadow_maps"], t.shared.shadow_views, t.camera, t.view.scale)
     ),
 }
 
@@ -80,14 +81,14 @@ def passes(planning):
         why = f"{casting} of {len(planning.scene.lights)} lights cast shadows, through {len(made)} maps"
         own = visibility.own_parts(planning, DEPTH)
         drawn = visibility.drawn("shadow_maps", why, own, planning, "shadow")
-        opaque = [i for i in planning.scene.surfels if i.casts_shadow and not i.is_transparent]
+        opaque = [k for k in planning.surfels if k.placed.casts_shadow and not k.placed.is_transparent]
         each = hidden_objects.looking("hidden_casters", FARTHEST) if hidden_objects.may_hide(planning, opaque) else None
         yield drawn._replace(run=run, once=_depends_on, each=each)
 
 
 def _depends_on(tile, p: Pass) -> tuple:
     """All that the maps depend on, but for the camera of the picture."""
-    of_scene = contents(tile.scene, tile.plan.facts["shadow_maps"], tile.identities.slots, tile.levels)
+    of_scene = contents(tile.scene.table, tile.plan.facts["shadow_maps"], tile.levels)
     return p._replace(once=None, reason=""), tile.plan.choices, tile.settings, of_scene
 
 
@@ -108,7 +109,7 @@ def plane_sum(planning, kind: str) -> Texture | None:
 
 def _lifted(planning) -> bool:
     """Whether any surfels lie below the smooth surface of their shading normals."""
-    return any(instance.surfels.lift is not None for instance in planning.scene.surfels)
+    return any_of(lambda instance: instance.surfels.lift is not None, planning.surfels)
 
 
 def parts(planning, p):
@@ -133,7 +134,7 @@ def run(tile, p: Pass):
     """Fill the atlas, one visibility pass per map. Parallel cameras store hardware depth, others depth / far."""
     target = tile.target(p)
     target.clear(depth=1.0)
-    for made, view in zip(tile.plan.facts["shadow_maps"], tile.shadow_views, strict=True):
+    for made, view in zip(tile.plan.facts["shadow_maps"], tile.shared.shadow_views, strict=True):
         is_linear = not made.camera.is_orthographic
         seen = replace(
             tile.plan, linear_depth=is_linear, variants=frozenset(["linear"] if is_linear else []), samples=1,
@@ -144,7 +145,7 @@ def run(tile, p: Pass):
         if made.is_smaller:
             settings = replace(settings, detail_tolerance=COARSER * settings.detail_tolerance)
         from_light = replace(
-            tile, plan=seen, camera=made.drawn, settings=settings, view=view, shadow_views=(), shown_blocks={},
+            tile, plan=seen, camera=made.drawn, settings=settings, view=view, shown_blocks={},
             is_depth_only=True,
         )  # fmt: skip
         drawn = p._replace(state={**p.state, "fragment_depth": is_linear, "sample_shading": False})
@@ -157,7 +158,7 @@ def _as_cast(view: View, camera: Camera) -> View:
     themselves where shading normals differ from their own."""
     left, right, _, _ = camera.window
     texel = (right - left) / camera.size[0] * (view.scale if camera.is_orthographic else 1.0)
-    return replace(view, polygons=tuple(replace(p, setback=SETBACK * texel) for p in view.polygons))
+    return replace(view, polygons=replace(view.polygons, setback=SETBACK * texel))
 
 
 def lights_texture(tile):

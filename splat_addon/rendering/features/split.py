@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 from ..plan.graph import Part
-from ..plan.planning import counted
+from ..plan.planning import count, counted
 from .drawing import SPLAT_HOSTS
 
 
 def _count(planning) -> int:
-    return sum(placed.is_split for placed in planning.shown)
+    return count(lambda placed: placed.is_split, planning.scene.table.kinds)
 
 
 passes, is_present = counted(

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from ..plan.graph import Part
+from ..plan.planning import any_of
 
 #: uv and slot, change of uv along the half-axes, border of the map; and the half-axes.
 _VARYINGS = (("flat", "vec3", "texture_place"), ("flat", "vec4", "texture_along"), ("flat", "vec2", "texture_border"))
@@ -33,8 +34,7 @@ ARRIVES = {"surfel_uvs": lambda instance: instance.is_textured}
 
 def _are_textured(planning) -> tuple[bool, bool]:
     """Whether any surfels, and any polygons, use textures."""
-    scene = planning.scene
-    return any(i.is_textured for i in scene.surfels), any(i.is_textured for i in scene.polygons)
+    return tuple(any_of(lambda i: i.is_textured, kinds) for kinds in (planning.surfels, planning.polygons))
 
 
 def is_present(planning) -> bool:

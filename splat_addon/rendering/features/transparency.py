@@ -16,6 +16,7 @@ of its samples, and so does the opaque picture behind them.
 from __future__ import annotations
 
 from ..plan.graph import Loop, Part, Pass, Texture, fill_all, of_pixels
+from ..plan.planning import any_of
 from . import depth_bounds, gbuffer, lighting, oit, outputs, visibility
 from .drawing import SPLAT_HOSTS
 
@@ -37,7 +38,7 @@ def layers(planning) -> int:
     """The maximum number of layers. Raises ValueError for hardware multisampling, whose samples have individual depths
     but are shaded together."""
     method, settings = planning.method, planning.settings
-    if not any(instance.is_transparent for instance in planning.scene.surfels):
+    if not any_of(lambda instance: instance.is_transparent, planning.surfels):
         planning.skip("transparent layers", "every surfel is opaque")
         return 0
     why_not = ""

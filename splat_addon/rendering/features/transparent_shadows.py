@@ -9,7 +9,7 @@ need none, because they let light through only beside what they show.
 from __future__ import annotations
 
 from ..plan.graph import Part
-from ..plan.planning import counted
+from ..plan.planning import any_of, count, counted
 from . import shadows, transparency
 from .drawing import LIGHTING_HOSTS
 
@@ -17,13 +17,12 @@ from .drawing import LIGHTING_HOSTS
 def _casting(planning) -> int:
     if not planning.shown or not planning.find(shadows.maps) or not planning.find(transparency.layers):
         return 0
-    return sum(i.is_transparent and i.casts_shadow for i in planning.scene.surfels)
+    return count(lambda i: i.is_transparent and i.casts_shadow, planning.surfels)
 
 
 def _averaged(planning) -> bool:
     """Whether any of them lets light through evenly."""
-    casting = (i for i in planning.scene.surfels if i.is_transparent and i.casts_shadow)
-    return any(not instance.surfels.is_cut_out for instance in casting)
+    return any_of(lambda i: i.is_transparent and i.casts_shadow and not i.surfels.is_cut_out, planning.surfels)
 
 
 passes, is_present = counted(

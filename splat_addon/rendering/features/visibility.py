@@ -7,7 +7,7 @@ from collections.abc import Generator
 from dataclasses import replace
 
 from ..plan.graph import Part, Pass, Pause, Texture
-from ..view import View
+from ..view import Items, View
 from . import depth_format, hidden_objects, silhouettes
 from .drawing import draw_polygons, draw_splats, storage_samplers
 
@@ -68,10 +68,10 @@ def run(tile, p: Pass):
     by_rows = tile
     if silhouettes.rows_of(p.depth) > 1:
         by_rows = replace(tile, view=_seen_by_rows(tile.view, target.size[1]))
-    polygons = tile.view.polygons if p.kind != "layer" else ()
+    polygons = tile.view.polygons if p.kind != "layer" else None
     for splats in hidden_objects.front_to_back(tile, p, tile.drawn_by(p)):
         yield from draw(by_rows, p, target, splats, polygons)
-        polygons = ()
+        polygons = None
     return target
 
 
@@ -80,12 +80,13 @@ def run_in(tile, p: Pass, target, viewport: tuple[int, int, int, int]) -> Genera
     polygons = tile.view.polygons
     for splats in hidden_objects.front_to_back(tile, p, tile.view.placed, viewport):
         yield from draw(tile, p, target, splats, polygons, viewport)
-        polygons = ()
+        polygons = None
 
 
-def draw(tile, p: Pass, target, splats, polygons, viewport=None) -> Generator[Pause]:
+def draw(tile, p: Pass, target, splats: Items, polygons: Items | None, viewport=None) -> Generator[Pause]:
     """Draw polygons and splats with the pass's programs: polygons first, because they hide much and cost little."""
-    yield from draw_polygons(tile, p, target, polygons, "polygon_visibility.vert", "polygons", viewport=viewport)
+    if polygons:
+        yield from draw_polygons(tile, p, target, polygons, "polygon_visibility.vert", "polygons", viewport=viewport)
     yield from draw_splats(tile, p, target, splats, "visibility.vert", "splats", viewport=viewport)
 
 

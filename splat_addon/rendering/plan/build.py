@@ -30,6 +30,7 @@ def plan(
     part: tuple[int, int, int, int] | None = None,
     samples: int | None = None,
     is_repeatable: bool = False,
+    around: Camera | None = None,
 ) -> FramePlan:
     """The passes that this picture needs.
 
@@ -38,16 +39,10 @@ def plan(
     part: x, y, width, height in pixels, if only a part of the picture is drawn.
     samples: number of samples that show this scene, if fewer than the picture's.
     is_repeatable: whether the picture is the same whatever was drawn before it.
+    around: a camera that sees all that the cameras of several samples see, if the plan is for all of them.
     """
-    planning = Planning(
-        scene,
-        camera,
-        settings,
-        viewers or Viewers(camera, (camera,)),
-        is_added_up,
-        samples or settings.samples,
-        is_repeatable,
-    )
+    about = is_added_up, samples or settings.samples, is_repeatable, around or camera
+    planning = Planning(scene, camera, settings, viewers or Viewers(camera, (camera,)), *about)
     if settings.multisampling and planning.method.rasterizer != "object_space":
         raise ValueError(
             f"Method {planning.method.name} filters in screen space, where hardware multisampling has no effect; set "

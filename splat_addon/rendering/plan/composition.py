@@ -50,6 +50,7 @@ DEFAULTS = {
     "sides": "told_apart",
     "rest_opacity": "surfaces",
     "faces": "one",
+    "instances": "uniform",
 }
 
 

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -16,9 +15,8 @@ from ..detail.levels import is_worth_preparing, sight
 from ..device.interface import Pipeline, Target
 from ..device.interface import Texture as DeviceTexture
 from ..features import ARRIVES, DRAWN, DRAWS, INPUTS, VALUES
-from ..identity import Identities
 from ..methods import get_method
-from ..scene import Instance, Scene
+from ..scene import Instance, Placed, Scene
 from ..scene.camera import Camera
 from ..settings import Settings
 from ..upload.cuts import Cut, whole_set
@@ -27,11 +25,13 @@ from ..upload.parts import place_in_part
 from ..upload.resources import Resources, StoredSurfels, TextureKey
 from ..upload.storages import get_storage
 from ..upload.stored_order import SPLATS_PER_ROW, clipped_places
-from ..view import DrawItem, View, split_distances
+from ..view import DrawItem, Items, View, split_distances
+from .batches import batches, instance_texels
 from .frame_plan import FramePlan
 from .graph import Loop, Pass, Pause, Step, Texture, of_pixels
 from .programs import describe
-from .uniforms import DRAW, VIEW, Block, std140
+from .shared import Shared
+from .uniforms import DRAW, INSTANCE, VIEW, Block, instance_values, std140
 
 #: What rejects hidden splats reads less than this many pixels beyond their ellipses.
 _BESIDE = 24
@@ -41,7 +41,7 @@ _BESIDE = 24
 class TileContext:
     """camera: of the tile, including its margin. view: the scene as that camera sees it.
 
-    shadow_views: the shadow casters as seen by the camera of each shadow map.
+    shared: by all tiles and samples of the picture.
     rectangle: x, y, width, height in pixels of the tile without its margin, in the picture.
     shown_blocks: of objects with levels, the blocks that passes draw from now on: those of the cut, until some of
         them are found to be hidden.
@@ -53,8 +53,8 @@ class TileContext:
     scene: Scene
     camera: Camera
     settings: Settings
-    view: View
-    shadow_views: tuple[View, ...] = ()
+    view: View | None
+    shared: Shared
     rectangle: tuple[int, int, int, int] = (0, 0, 0, 0)
     shown_blocks: dict[Instance, np.ndarray] = field(default_factory=dict)
     is_depth_only: bool = False
@@ -77,16 +77,23 @@ class TileContext:
         colors = [self.texture(texture, texture in updated) for texture in p.colors]
         return self.resources.device.target(colors, depth and self.texture(depth))
 
-    def drawn_by(self, p: Pass) -> tuple[DrawItem, ...]:
+    def drawn_by(self, p: Pass) -> Items:
         """The splats of the tile's view that a pass draws, except what was found to be hidden."""
-        return tuple(
-            d for d in self.view.placed if d not in self.hidden and all(draws(self, p, d.instance) for draws in DRAWS)
-        )
+        table = self.view.placed.table
+        are_drawn = table.of_kinds(lambda instance: all(draws(self, p, instance) for draws in DRAWS))
+        return self.view.placed.taken(are_drawn & ~self.hidden[table.numbers])
 
     @cached_property
-    def hidden(self) -> set[DrawItem]:
-        """Objects that passes found to be behind all that is seen."""
-        return set()
+    def hidden(self) -> np.ndarray:
+        """(n,) bool: the objects of the scene that passes found to be behind all that is seen."""
+        return np.zeros(len(self.scene.table), bool)
+
+    def with_levels(self, items: Items) -> list[DrawItem]:
+        """Those that have levels of detail."""
+        if not self.plan.facts.get("levels"):
+            return []
+        rows = np.flatnonzero(items.table.of_kinds(lambda placed: self.levels(placed) is not None))
+        return [items.item(row) for row in rows.tolist()]
 
     def textures(self, p: Pass, program: Pipeline, placed: DrawItem | None = None) -> list[DeviceTexture]:
         """The textures that a program samples. placed: the object being drawn."""
@@ -101,9 +108,38 @@ class TileContext:
             for name in program.description.samplers
         ]
 
-    def blocks(self, program: Pipeline, draw: np.ndarray | None = None) -> list[np.ndarray]:
-        """The values of a program's uniform blocks. draw: of the object being drawn."""
-        return [draw if block is DRAW else self._block(block) for block in program.description.blocks]
+    def blocks(
+        self, program: Pipeline, placed: DrawItem | None = None, draw: np.ndarray | None = None
+    ) -> list[np.ndarray]:
+        """The values of a program's uniform blocks. placed: the object being drawn. draw: those of the draw call."""
+        own = {DRAW: lambda: draw, INSTANCE: lambda: self._values_of(placed.items)[placed.row]}
+        return [own[block]() if block in own else self._block(block) for block in program.description.blocks]
+
+    def _values_of(self, items: Items) -> np.ndarray:
+        """The values of the block of each of the items; kept, because they are asked for one by one."""
+        if self._values[0] is not items:
+            self._values[:] = items, instance_values(items)
+        return self._values[1]
+
+    @cached_property
+    def _values(self) -> list:
+        return [None, None]
+
+    def instance_table(self, items: Items) -> DeviceTexture:
+        """The texture of the values of many instances."""
+        return self.shared.of_eye(items.key, self.camera, lambda: self.resources.data(instance_texels(items)))
+
+    def batches(self, items: Items) -> list[Items]:
+        """The items in groups that are drawn together."""
+        if items not in self._batches:
+            # a cut is its instance's own
+            are_whole = items.table.of_kinds(lambda placed: self.levels(placed) is None)
+            self._batches[items] = batches(items, items.table.triangles * are_whole)
+        return self._batches[items]
+
+    @cached_property
+    def _batches(self) -> dict[Items, list[Items]]:
+        return {}
 
     @cached_property
     def _blocks(self) -> dict[Block, np.ndarray]:
@@ -123,9 +159,9 @@ class TileContext:
         lengths = self.depth_unit, 1.0 / view.scale
         return view.projection, to_world, self.window, view.near, is_parallel, *lengths, self.plan.filter_variance
 
-    def levels(self, instance: Instance) -> Hierarchy | None:
+    def levels(self, instance: Placed) -> Hierarchy | None:
         """The hierarchy of an object's surfels, if the plan has levels of detail for it and it is there."""
-        if instance not in self.plan.facts.get("levels", ()):
+        if instance.shape not in self.plan.facts.get("levels", ()):
             return None
         return self.resources.levels(instance.surfels, get_storage(self.plan.storage))
 
@@ -154,13 +190,14 @@ class TileContext:
     def check_arrived(self) -> None:
         """Request everything of the scene's surfels that passes read; raises `NotYet` for what is on its way."""
         read, late = {name for p in self.plan.passes for name in p.all("inputs")}, set()
-        for instance in self.scene.surfels:
+        kinds = (kind.placed for kind in self.scene.table.kinds)
+        for instance in (placed for placed in kinds if isinstance(placed, Instance)):
             if instance.is_cut:
                 # the next view has another, so that it would never be there
                 self.resources.loading.exempt.add(instance.surfels)
                 continue
             wanted = [name for name, is_needed in ARRIVES.items() if name in read and is_needed(instance)]
-            for name in wanted if len(instance.surfels) else ():
+            for name in wanted:
                 try:
                     DRAWN[name](self, SimpleNamespace(instance=instance, part=0))
                 except NotYet as reason:
@@ -177,6 +214,16 @@ class TileContext:
             return len(placed.instance.surfels)
         rows = self.shown_blocks_of(placed)
         return int((levels.blocks.last[rows] - levels.blocks.first[rows]).sum())
+
+    def drawn_counts(self, items: Items) -> np.ndarray:
+        """(n,) the number of splats of each instance that this view draws."""
+        with_levels = self.with_levels(items)
+        if not with_levels:
+            return items.table.counts
+        counts = items.table.counts.copy()
+        for placed in with_levels:
+            counts[placed.row] = self.drawn_count(placed)
+        return counts
 
     def in_parts(self, placed: DrawItem) -> Iterator[tuple[DrawItem, Cut]]:
         """An instance as it is drawn, for each part of its storage that has any of it."""
@@ -219,30 +266,14 @@ class TileContext:
 
     def sight(self, placed: DrawItem) -> Sight:
         """This view of an instance, as its hierarchy is given it."""
-        split, tolerance = split_distances(placed, self.view), self.settings.detail_tolerance
+        split, tolerance = split_distances(placed), self.settings.detail_tolerance
         is_depth_only = self.is_depth_only and not placed.instance.is_transparent
         return sight(placed.instance, self.camera, placed.hides_backs, tolerance, split, is_depth_only)
-
-    @cached_property
-    def identities(self) -> Identities:
-        """The meaning of the scene's numbers; they also distinguish instances in transparent shadows."""
-        return Identities(self.scene)
 
     @property
     def depth_unit(self) -> float:
         """Factor from view depth to stored linear depth; 0 if hardware depth is stored."""
         return 1.0 / self.view.far if self.plan.linear_depth else 0.0
-
-    @cached_property
-    def color_scale(self) -> float:
-        """Factor by which float16 sums multiply colours: a power of two that brings the scene's brightest colour to at
-        most 1."""
-        if self.plan.sum_format == "float32":
-            return 1.0
-        surfels = [instance.surfels for instance in self.scene.surfels]  # polygons are not summed
-        textures = [t for instance in self.scene.surfels if instance.is_textured for t in instance.textures if t]
-        brightest = max((source.brightest for source in (*surfels, *textures)), default=0.0)
-        return math.ldexp(1.0, -math.ceil(math.log2(brightest))) if brightest > 0 else 1.0
 
     @property
     def window(self) -> tuple[float, float, float, float]:
@@ -324,7 +355,8 @@ class Execution:
         if p.once is None:
             return (yield from self._drawn(p, tile))
         if not self._is_shared_done:
-            key, value, made_from = tile.key(p.fills[0]), p.once(tile, p), tile.resources.made_from
+            key, made_from = tile.key(p.fills[0]), tile.resources.made_from
+            value = tile.shared.kept(("once", p.name, tile.resources.arrivals), lambda: p.once(tile, p))
             # none while it is drawn over, which may be given up
             if made_from.pop(key, None) != value:
                 yield from self._drawn(p, tile)

@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import TypeVar
 
 from ..methods import get_method
-from ..scene import Scene
+from ..scene import Instance, Placed, PolygonInstance, Scene
 from ..scene.camera import Camera
+from ..scene.table import Kind
 from ..settings import Settings
 from ..shading_models import get_shading_model
 from ..shadows.receivers import Viewers
@@ -19,8 +20,9 @@ Found = TypeVar("Found")
 class Planning:
     """viewers: the cameras that shadow maps serve. is_added_up: whether the picture is a sample of a refining view.
     samples: number of samples that show the scene. is_repeatable: whether the picture is the same whatever was drawn
-        before.
+        before. around: sees all that any sample sees.
 
+    shown: everything visible. surfels, polygons: the kinds of it.
     facts: as in `FramePlan`; features add to them.
     """
 
@@ -32,13 +34,17 @@ class Planning:
         viewers: Viewers,
         is_added_up: bool,
         samples: int,
-        is_repeatable: bool = False,
+        is_repeatable: bool,
+        around: Camera,
     ):
         self.scene, self.camera, self.settings = scene, camera, settings
         self.viewers, self.is_added_up, self.samples = viewers, is_added_up, samples
-        self.is_repeatable = is_repeatable
+        self.is_repeatable, self.around = is_repeatable, around
         self.method, self.model = get_method(settings.method), get_shading_model(settings.shading)
         self.shown = scene.shown
+        kinds = scene.table.kinds
+        self.surfels = tuple(kind for kind in kinds if isinstance(kind.placed, Instance))
+        self.polygons = tuple(kind for kind in kinds if isinstance(kind.placed, PolygonInstance))
         self.features: list[tuple[str, str]] = []
         self.skipped: list[tuple[str, str]] = []
         self.facts: dict[str, object] = {}
@@ -57,6 +63,16 @@ class Planning:
     def skip(self, what: str, why: str) -> None:
         """Record what is not needed, and why."""
         self.skipped.append((what, why))
+
+
+def count(which: Callable[[Placed], bool], kinds: Iterable[Kind]) -> int:
+    """The number of instances of these kinds for which this holds."""
+    return sum(kind.count for kind in kinds if which(kind.placed))
+
+
+def any_of(which: Callable[[Placed], bool], kinds: Iterable[Kind]) -> bool:
+    """Whether this holds for any instance of these kinds."""
+    return any(which(kind.placed) for kind in kinds)
 
 
 def counted(

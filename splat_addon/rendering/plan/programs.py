@@ -12,7 +12,10 @@ from ..features import CONSTANTS, ORDER, VALUES
 from .composition import DEFAULTS, compose
 from .frame_plan import FramePlan
 from .graph import Part, Pass
-from .uniforms import DRAW, VIEW, Block
+from .uniforms import DRAW, INSTANCE, VIEW, Block
+
+#: Tells fragments whose they are, where one draw call has many instances and fragments need the values of theirs.
+_NUMBER = ("flat", "float", "instance_number")
 
 
 def describe(plan: FramePlan, p: Pass, vertex: str = "fullscreen.vert", *variants: str) -> PipelineDescription:
@@ -30,7 +33,7 @@ def describe(plan: FramePlan, p: Pass, vertex: str = "fullscreen.vert", *variant
         blocks=blocks_in(*texts),
         samplers=tuple(dict.fromkeys([name for part in parts for name in part.inputs] + [name for name, _ in sampled])),
         multisampled=tuple(dict.fromkeys(name for name, t in sampled if plan.multisamples_of(t))),
-        varyings=tuple(dict.fromkeys(varying for part in parts for varying in part.varyings)),
+        varyings=tuple(dict.fromkeys([varying for part in parts for varying in part.varyings] + _told(texts))),
         outputs=tuple((t.type, f"{t.name}_next" if t in updated else called.get(t, t.name)) for t in drawn),
         defines=tuple({**constants_in(*texts), **{n: str(v) for part in parts for n, v in part.constants}}.items()),
         **p.state,
@@ -44,7 +47,15 @@ def composed(plan: FramePlan, p: Pass, vertex: str, *variants: str, origins=Fals
     depth_format = {"depth_format": "linear" if plan.linear_depth else "hardware"}
     names = DEFAULTS | dict(plan.choices) | depth_format | {name: file for part in parts for name, file in part.choices}
     ordered, chosen = _ordered((*words, p.kind)), tuple(names.items())
-    return compose(vertex, ordered, chosen, origins), compose(p.host, ordered, chosen, origins)
+    texts = tuple(compose(host, ordered, chosen, origins) for host in (vertex, p.host))
+    if names["instances"] == "table" and re.search(r"\binstance\.", texts[1]):
+        chosen = tuple((names | {"instances": "told_table"}).items())
+        texts = tuple(compose(host, ordered, chosen, origins) for host in (vertex, p.host))
+    return texts
+
+
+def _told(texts: tuple[str, str]) -> list[tuple[str, str, str]]:
+    return [_NUMBER] if _NUMBER[2] in texts[1] else []
 
 
 def _taken(plan: FramePlan, p: Pass, variants: Iterable[str]) -> list[Part]:
@@ -64,7 +75,10 @@ def blocks_in(*texts: str) -> tuple[Block, ...]:
     names = set(re.findall(r"\bframe\.(\w+)", text))
     if missing := names - set(VALUES):
         raise ValueError(f"A shader reads frame.{min(missing)}, which no feature provides.")
-    used = [block for block in (VIEW, DRAW) if re.search(rf"\b{block[1]}\.", text)]
+    used = [block for block in (VIEW, DRAW, INSTANCE) if re.search(rf"\b{block[1]}\.", text)]
+    if f"struct {INSTANCE[0]} " in text:
+        # of many instances, it is a table
+        used.remove(INSTANCE)
     fields = tuple((kind, name) for name, (kind, _) in VALUES.items() if name in names)
     return (*used, *((("Frame", "frame", fields),) if fields else ()))
 

@@ -10,6 +10,9 @@ from functools import cache
 
 import numpy as np
 
+from ..scene.light import MAX_LIGHT_SETS
+from ..view import Items
+
 #: (struct name, instance name, ((type, field), ...))
 Block = tuple[str, str, tuple[tuple[str, str], ...]]
 
@@ -31,29 +34,61 @@ VIEW: Block = (
     ),
 )
 
-#: light_set: 1 in the channel of the instance's set. orientation: -1 for a mirrored object. epsilon: how far visibility
-#: moves splats back, in radii, or polygons, in view units. least_offset: of both, as a share of the distance; of an
-#: orthographic camera a length. first_slot, more_slots: number of its first material slot, and of those after it.
-#: split_distance: as of `DrawItem`. first_merged: index of the first stored splat that is a merged one.
-#: rows_without_lines: of the storage before that, which the texture of clip lines lacks.
+#: Of one draw call. epsilon: how far visibility moves splats back, in radii. least_offset: the least by which it moves
+#: anything, as a share of the distance; of an orthographic camera a length. first_merged: index of the first stored
+#: splat that is a merged one. rows_without_lines: of the storage before that, which the texture of clip lines lacks.
+#: Where many instances are drawn, first_instance: the first row of their table; first, stride: the triangles of each.
 DRAW: Block = (
     "Draw",
     "draw",
+    (
+        ("float", "epsilon"),
+        ("float", "least_offset"),
+        ("float", "first_merged"),
+        ("float", "rows_without_lines"),
+        ("float", "first_instance"),
+        ("float", "first"),
+        ("float", "stride"),
+    ),
+)
+
+#: Of one instance. light_set: 1 in the channel of the instance's set. orientation: -1 for a mirrored object. overlap:
+#: of polygons, how far behind them splats may lie, in view units. first_slot, more_slots: number of its first material
+#: slot, and of those after it. split_distance: as of `Items`.
+INSTANCE: Block = (
+    "Instance",
+    "instance",
     (
         ("mat4", "model_view"),
         ("mat4", "normal_matrix"),
         ("vec4", "light_set"),
         ("float", "orientation"),
         ("float", "hides_backs"),
-        ("float", "epsilon"),
-        ("float", "least_offset"),
+        ("float", "overlap"),
         ("float", "first_slot"),
         ("float", "more_slots"),
         ("float", "split_distance"),
-        ("float", "first_merged"),
-        ("float", "rows_without_lines"),
     ),
 )
+
+#: Texels of an instance in a table of many, which has the layout of the block.
+TEXELS_PER_INSTANCE = 11
+
+
+def instance_values(items: Items) -> np.ndarray:
+    """(n, 44) float32 values of `INSTANCE` in std140 layout, of each of the items."""
+    count, from_eye = len(items), items.from_eye
+    model_views = from_eye.model_views.copy()
+    model_views[:, :3] *= items.scale
+    normal_matrices = np.zeros((count, 4, 4))
+    normal_matrices[:, :3, :3], normal_matrices[:, 3, 3] = from_eye.normal_matrices, 1
+    values = np.zeros((count, 4 * TEXELS_PER_INSTANCE), np.float32)
+    values[:, :16] = model_views.transpose(0, 2, 1).reshape(count, 16)
+    values[:, 16:32] = normal_matrices.transpose(0, 2, 1).reshape(count, 16)
+    values[:, 32:36] = np.eye(MAX_LIGHT_SETS)[items.table.light_sets]
+    single = from_eye.orientations, items.hides_backs, items.overlaps, *items.table.slots.T, items.split_distances
+    values[:, 36:42] = np.stack(single, axis=1)
+    return values
 
 
 _SIZES = {"float": (1, 1), "vec2": (2, 2), "vec4": (4, 4), "mat4": (16, 4)}

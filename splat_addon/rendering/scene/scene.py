@@ -22,15 +22,7 @@ from .light import MAX_LIGHT_SETS, Light
 from .material import Material, NormalTexture, SurfaceTexture
 from .picture_sun import PictureSun
 from .polygons import Polygons
-
-#: Sample size for heuristics that affect speed, never correctness.
-_SOME = 256
-
-#: A matrix whose shortest axis is below this share of its longest leaves no direction for a normal.
-_FLATTEST = 1e-12
-
-#: (8, 3) for each corner of a box, whether it is at the high end of each axis.
-_CORNERS = np.array([[k & 1, k >> 1 & 1, k >> 2 & 1] for k in range(8)], bool)
+from .table import CORNERS, FLATTEST, InstanceTable, make_table
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,18 +93,10 @@ class Placed:
         """Whether it is polygons near the camera and surfels beyond."""
         return not (self.split_distance is None and self.split_length is None)
 
-    def polygons_end(self, camera: Camera) -> float:
-        """The distance from a camera up to which a split object is polygons, world units; infinite, or 0, if a parallel
-        camera shows all of it in one form."""
-        if self.split_length is None:
-            return self.split_distance
-        pixels = self.split_length * camera.pixels_per_unit()
-        return pixels if not camera.is_orthographic else math.inf if pixels > 1 else 0.0
-
     @property
     def is_flattened(self) -> bool:
         """Whether its matrix leaves no direction for a normal."""
-        return not self.stretches[2] > _FLATTEST * self.stretches[0]
+        return not self.stretches[2] > FLATTEST * self.stretches[0]
 
     @property
     def is_textured(self) -> bool:
@@ -145,42 +129,20 @@ class Placed:
         model_view = self.model_view(camera)
         return self._local_corners @ model_view[:3, :3].T + model_view[:3, 3]
 
-    def hull(self, camera: Camera) -> np.ndarray:
-        """(n, 3) float64 positions in the camera's view space whose convex hull holds all of it."""
-        return self.corners(camera)
-
-    def distances(self, camera: Camera) -> tuple[float, float]:
-        """Bounds on the distances of its points from the camera, along the view of a parallel one; world units."""
-        corners = self.corners(camera)
-        if camera.is_orthographic:
-            return float(-corners[:, 2].max()), float(-corners[:, 2].min())
-        nearest = np.clip(0.0, corners.min(axis=0), corners.max(axis=0))
-        return float(np.linalg.norm(nearest)), float(np.linalg.norm(corners, axis=1).max())
-
-    def world_corners(self) -> np.ndarray:
-        """(8, 3) float64 corners of a box around it, in world space."""
-        corners = self._local_corners + self.shape.origin
-        return corners @ self.matrix_world[:3, :3].T + self.matrix_world[:3, 3]
-
     @cached_property
     def _local_corners(self) -> np.ndarray:
         low, high = self.shape.local_bounds
-        return np.where(_CORNERS, high, low)
-
-    def some_places(self, camera: Camera) -> np.ndarray:
-        """(n, 3) a sample of its surfels or corners, in the camera's view space."""
-        model_view = self.model_view(camera)
-        return self.shape.positions[self._some] @ model_view[:3, :3].T + model_view[:3, 3]
+        return np.where(CORNERS, high, low)
 
     @property
-    def _some(self) -> slice:
-        return slice(None, None, max(-(-len(self.shape) // _SOME), 1))
+    def is_closed(self) -> bool:
+        """Whether no back face is visible from outside: it is solid and opaque."""
+        return self.shape.is_solid and not self.is_transparent
 
     def hides_backs(self, camera: Camera) -> bool:
-        """Whether no back face can be visible: it is solid and opaque, and wholly beyond the near plane, so the camera
-        is outside."""
-        is_closed = self.shape.is_solid and not self.is_transparent
-        return is_closed and bool((-self.corners(camera)[:, 2] >= camera.near).all())
+        """Whether no back face can be visible: it is closed, and wholly beyond the near plane, so the camera is
+        outside."""
+        return self.is_closed and bool((-self.corners(camera)[:, 2] >= camera.near).all())
 
 
 @dataclass(frozen=True, eq=False)
@@ -205,43 +167,17 @@ class Instance(Placed):
         """The largest surfel's radius in world units."""
         return self.surfels.largest * float(self.stretches[0])
 
-    @property
-    def grain(self) -> float:
-        """The same without large surfels, which count as the samples that they replace."""
-        return self.surfels.largest_grain * float(self.stretches[0])
-
-    def hull(self, camera: Camera) -> np.ndarray:
-        model_view = self.model_view(camera)
-        return self.surfels.local_hull @ model_view[:3, :3].T + model_view[:3, 3]
-
-    def shows_backs(self, camera: Camera) -> bool:
-        """Whether some surfels face away from the camera and are drawn, judged from a sample.
-
-        An affine map keeps the sides of a plane, so this is tested in the object's own space.
-        """
-        if self.is_flattened or self.hides_backs(camera):
-            return False
-        return bool(self._are_backs(camera, self.surfels.positions[self._some], self._some_normals).any())
-
     def backs(self, camera: Camera) -> int:
         """Number of surfels that face away from the camera."""
         if self.is_flattened:
             return 0
-        normals = quaternion_axes(self.surfels.rotations)[2]
-        return int(np.count_nonzero(self._are_backs(camera, self.surfels.positions, normals)))
-
-    def _are_backs(self, camera: Camera, positions: np.ndarray, normals: np.ndarray) -> np.ndarray:
-        """(n,) bool for surfels in the object's own space."""
-        model_view = self.model_view(camera)
+        normals, model_view = quaternion_axes(self.surfels.rotations)[2], self.model_view(camera)
+        # an affine map keeps the sides of a plane, so this is told in the object's own space
         if camera.is_orthographic:
             to_eye = np.linalg.solve(model_view[:3, :3], (0.0, 0.0, 1.0))
         else:
-            to_eye = np.linalg.solve(model_view[:3, :3], -model_view[:3, 3]) - positions
-        return np.sum(normals * to_eye, axis=1) < 0
-
-    @cached_property
-    def _some_normals(self) -> np.ndarray:
-        return quaternion_axes(self.surfels.rotations[self._some])[2]
+            to_eye = np.linalg.solve(model_view[:3, :3], -model_view[:3, 3]) - self.surfels.positions
+        return int(np.count_nonzero(np.sum(normals * to_eye, axis=1) < 0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -286,9 +222,10 @@ class PolygonInstance(Placed):
         """Whether a texture's alpha makes holes in it."""
         return self.is_textured and any(texture is not None and texture.is_cut_out for texture in self.textures)
 
-    def hides_backs(self, camera: Camera) -> bool:
-        """Like `Placed.hides_backs`, but never true with holes, through which backs may be visible."""
-        return not self.is_cut_out and super().hides_backs(camera)
+    @property
+    def is_closed(self) -> bool:
+        """Like `Placed.is_closed`, but never true with holes, through which backs may be visible."""
+        return not self.is_cut_out and super().is_closed
 
 
 @dataclass(frozen=True, eq=False)
@@ -337,7 +274,12 @@ class Scene:
     @property
     def shown(self) -> tuple[Placed, ...]:
         """Everything visible, of either kind."""
-        return tuple(placed for placed in (*self.surfels, *self.polygons) if len(placed.shape))
+        return self.table.placed
+
+    @cached_property
+    def table(self) -> InstanceTable:
+        """Everything visible, as arrays."""
+        return make_table((*self.surfels, *self.polygons))
 
 
 def _radiance(name: str, given) -> tuple[float, ...]:

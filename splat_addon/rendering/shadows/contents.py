@@ -13,31 +13,30 @@ from operator import attrgetter
 from weakref import ref
 
 from ...hierarchy import Hierarchy
-from ..scene import Instance, Placed, PolygonInstance, Scene
+from ..scene import Instance, Placed, PolygonInstance
 from ..scene.camera import Camera
-from .maps import ShadowMap, casting
+from ..scene.table import InstanceTable
+from .maps import ShadowMap
 
-#: Fields of instances that are compared in another way, or change nothing in a map.
-_APART = {"shape", "matrix_world", "stream", "materials", "light_set", "name", "index"}
+#: Fields that are compared in another way, or change nothing in a map.
+_APART = {
+    *("shape", "matrix_world", "stream", "materials", "light_set", "name", "index", "split_distance", "split_length")
+}
 _OF = {
     kind: attrgetter(*(field.name for field in fields(kind) if field.name not in _APART))
     for kind in (Instance, PolygonInstance, Camera)
 }
 
 
-def contents(
-    scene: Scene,
-    maps: Sequence[ShadowMap],
-    slots: Callable[[Placed], tuple[int, int]],
-    levels: Callable[[Instance], Hierarchy | None],
-) -> tuple:
+def contents(table: InstanceTable, maps: Sequence[ShadowMap], levels: Callable[[Instance], Hierarchy | None]) -> tuple:
     """All of a scene that its shadow maps depend on, but for the camera of the picture.
 
-    slots: gives the numbers of an object's material slots. levels: gives the hierarchy of an instance, or None.
+    levels: gives the hierarchy of an instance, or None.
     """
-    casters = casting(scene).shown
-    each = [(ref(c.shape), c.matrix_world.tobytes(), _OF[type(c)](c), slots(c), _levels(levels, c)) for c in casters]
-    numbers = {placed: number for number, placed in enumerate(casters)}
+    casters = table.casting
+    arrays = casters.matrices, casters.splits, casters.slots, casters.kind_of
+    kinds = [(ref(kind.placed.shape), _OF[type(kind.placed)](kind.placed), _levels(levels, kind.placed))
+             for kind in casters.kinds]  # fmt: skip
     each_map = [
         (
             m.camera.matrix_world.tobytes(),
@@ -45,11 +44,11 @@ def contents(
             m.place,
             m.used,
             m.is_smaller,
-            *map(numbers.get, m.casters),
+            m.casters.numbers.tobytes(),
         )
         for m in maps
     ]
-    return each, each_map
+    return [array.tobytes() for array in arrays], kinds, each_map
 
 
 def _levels(levels: Callable[[Instance], Hierarchy | None], placed: Placed) -> ref | None:

@@ -13,9 +13,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..depth_range import beyond
-from ..scene import Placed, Scene
+from ..scene import Scene
 from ..scene.camera import Camera, look_at
 from ..scene.light import MAX_SUN_HALF_ANGLE, Light
+from ..scene.table import InstanceTable
 from ..view import View
 from .casters import in_the_way
 from .receivers import (
@@ -42,8 +43,6 @@ LEAST_SIDE = 32
 #: The map of a sun covers all that is visible, so where its texels would be larger than pixels, it has up to this many
 #: times as many along its side; of several suns, fewer. No map grows beyond the larger of this side and the settings'.
 FINER_SUN, LARGEST_SIDE = 4, 4096
-#: fields of `Scene` that contain shadow casters
-_KINDS = ("surfels", "polygons")
 #: The nearest distance of a caster, as a fraction of the farthest one's; closer casters cast no shadow.
 NEAREST = 1e-4
 
@@ -64,7 +63,7 @@ class ShadowMap:
     is_face: bool
     is_smaller: bool
     used: tuple[int, int, int, int]
-    casters: tuple[Placed, ...]
+    casters: InstanceTable
 
     @property
     def drawn(self) -> Camera:
@@ -89,14 +88,14 @@ def shadow_maps(
     """
     if not any(light.casts_shadow for light in scene.lights):
         return (), 0
-    casters = [placed for placed in casting(scene).shown if not placed.is_flattened]
-    if not casters:
+    casters = scene.table.casting
+    if not len(casters):
         return (), 0
-    corners = np.stack([instance.world_corners() for instance in casters])
+    corners = casters.world_corners
     suns = sum(light.casts_shadow and light.kind == "sun" for light in scene.lights)
     lamps = sum(light.casts_shadow and light.kind != "sun" for light in scene.lights)
-    for_sun = receivers(scene, replace(viewers.sun, lens=None), lights_splats) if suns else None
-    for_lamps = [receivers(scene, camera, lights_splats) for camera in viewers.lamps] if lamps else []
+    for_sun = receivers(scene.table, replace(viewers.sun, lens=None), lights_splats) if suns else None
+    for_lamps = [receivers(scene.table, camera, lights_splats) for camera in viewers.lamps] if lamps else []
     finest = max(min(resolution * (FINER_SUN // atlas_columns(suns)), LARGEST_SIDE), resolution)
     made, without, count = [], 0, 0
     for number, light in enumerate(scene.lights):
@@ -109,15 +108,15 @@ def shadow_maps(
             count += len(own)
             seen = [one and one.of(light) for one in ([for_sun] if light.kind == "sun" else for_lamps)]
             most = finest if light.kind == "sun" else resolution
-            made += _needed(number, light, own, most, [one for one in seen if one], casters, corners, len(whole) > 1)
+            made += _needed(number, light, own, most, [one for one in seen if one], casters, len(whole) > 1)
     return _placed(made), without
 
 
 def _needed(
-    number, light, cameras: list[Camera], most: int, seen: list[Receivers], casters, corners, are_faces
+    number, light, cameras: list[Camera], most: int, seen: list[Receivers], casters: InstanceTable, are_faces
 ) -> list[ShadowMap]:
     """The maps of a light that a picture looks up, with as many texels as it needs. most: texels along a side. seen: by
-    each camera of the picture. casters, corners: as in `shadow_maps`."""
+    each camera of the picture."""
     looks = [together([looked_up(c, one, spread_of(light, c)) for one in seen]) for c in cameras]
     if not any(looks):
         return []
@@ -130,10 +129,10 @@ def _needed(
     for camera in (resized(c, side) for c in cameras):
         spread = spread_of(light, camera)
         if one := together([looked_up(camera, one, spread) for one in seen]):
+            corners = casters.world_corners
             block = sees(camera, corners) & in_the_way(light, texel_of(camera), seen, spread, corners)
-            own = tuple(caster for caster, may in zip(casters, block.tolist(), strict=True) if may)
-            if own:
-                about = are_faces, side < resolution, used_texels(camera, one), own
+            if block.any():
+                about = are_faces, side < resolution, used_texels(camera, one), casters.taken(block)
                 found.append(ShadowMap(number, camera, (0, 0), *about))
     return found
 
@@ -189,18 +188,6 @@ def atlas_columns(maps: float) -> int:
 def atlas_size(maps: tuple[ShadowMap, ...]) -> tuple[int, int]:
     """Width and height in texels."""
     return tuple(max(m.place[k] + m.camera.size[k] for m in maps) for k in (0, 1))
-
-
-def casting(scene: Scene) -> Scene:
-    """The scene with only the instances that cast shadows."""
-    kinds = {name: tuple(i for i in getattr(scene, name) if i.casts_shadow and len(i.shape)) for name in _KINDS}
-    return replace(scene, **kinds, lights=())
-
-
-def among(scene: Scene, instances: tuple[Placed, ...]) -> Scene:
-    """The scene with only some of its instances."""
-    own = set(instances)
-    return replace(scene, **{name: tuple(i for i in getattr(scene, name) if i in own) for name in _KINDS})
 
 
 def texel_of(camera: Camera) -> float:

@@ -14,9 +14,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..depth_range import seen_by, visible_space
-from ..scene import Scene
 from ..scene.camera import Camera
 from ..scene.light import MAX_SUN_HALF_ANGLE, Light
+from ..scene.table import InstanceTable
 from .hexahedra import places_in_pyramid
 
 #: A map has at least this many texels along the smallest pixel that looks it up, or as many as the settings allow.
@@ -94,27 +94,27 @@ class LookedUp(NamedTuple):
     side: float
 
 
-def receivers(scene: Scene, camera: Camera, lights_splats: bool) -> Receivers | None:
-    """What a camera may see of a scene, through any point of its lens; None for nothing.
+def receivers(table: InstanceTable, camera: Camera, lights_splats: bool) -> Receivers | None:
+    """What a camera may see of instances, through any point of its lens; None for nothing.
 
     lights_splats: whether splats are lit at their centres, which may lie outside the picture.
     """
     pixel, camera = 1.0 / camera.pixels_per_unit(), _through_lens(camera)
-    seen, _, _ = seen_by(scene, camera)
-    if not seen:
+    seen = seen_by(table, camera)
+    if not len(seen.table):
         return None
     near, far, space = visible_space(camera, seen)
-    nearest, farthest = (np.clip([pick(depths) for _, depths, _ in seen], near, far) for pick in (np.min, np.max))
+    nearest, farthest = (np.clip(pick(seen.depths, axis=1), near, far) for pick in (np.min, np.max))
     if camera.is_orthographic:
-        nearest = farthest = np.ones(len(seen))
+        nearest = farthest = np.ones(len(seen.table))
     beside = _BESIDE * pixel * farthest
     return Receivers(
-        corners=np.stack([instance.world_corners() for instance, *_ in seen]),
+        corners=seen.table.world_corners,
         space=space,
-        light_sets=np.array([instance.light_set for instance, *_ in seen]),
+        light_sets=seen.table.light_sets,
         pixels=pixel * nearest,
         beside=beside,
-        outside=float(beside.max()) + max(radius for *_, radius in seen) * lights_splats,
+        outside=float(beside.max()) + float(seen.table.radii.max()) * lights_splats,
     )
 
 

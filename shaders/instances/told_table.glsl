@@ -1,0 +1,16 @@
+// References: none needed.
+// Summary: a draw call of many objects; vertices tell fragments whose they are, and both look up its values.
+
+#include "lib/instance_table.glsl"
+
+#part vertex
+int begun_vertex() {
+  int number = instance_of_vertex(gl_VertexID);
+  instance_number = float(number);
+  return vertex_of_instance(gl_VertexID, number);
+}
+
+#part fragment
+void begin_fragment() {
+  instance = stored_instance(int(instance_number + 0.5));
+}

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What all tiles and samples of a planned picture share, found once."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Hashable
+from functools import cached_property
+from typing import TypeVar
+
+from ..depth_range import clip_range
+from ..identity import Identities
+from ..scene import Instance, Scene
+from ..scene.camera import Camera
+from ..settings import Settings
+from ..shadows.maps import ShadowMap
+from ..view import View, build_view
+from .frame_plan import FramePlan
+
+Made = TypeVar("Made")
+
+#: Values that are kept: programs, and tables of instances in passes, of the camera and of lights.
+_KEPT = 128
+
+
+class Shared:
+    """A scene, the plan of its picture, and what depends on nothing else."""
+
+    def __init__(self, scene: Scene, plan: FramePlan, settings: Settings):
+        self.scene, self.plan, self.settings = scene, plan, settings
+        self._kept: dict[Hashable, object] = {}
+
+    def kept(self, key: Hashable, make: Callable[[], Made]) -> Made:
+        """What was made for a key; the last few are kept."""
+        if key not in self._kept:
+            while len(self._kept) >= _KEPT:
+                del self._kept[next(iter(self._kept))]
+            self._kept[key] = make()
+        return self._kept[key]
+
+    def of_eye(self, key: bytes, camera: Camera, make: Callable[[], Made]) -> Made:
+        """What was made for a key and the place of a camera, whichever window it looks through."""
+        return self.kept((camera.matrix_world.tobytes(), key), make)
+
+    @cached_property
+    def shadow_views(self) -> tuple[View, ...]:
+        """The shadow casters as seen by the camera of each shadow map."""
+        return tuple(self._seen_by_light(made) for made in self.plan.facts["shadow_maps"])
+
+    def _seen_by_light(self, made: ShadowMap) -> View:
+        """What is drawn into a shadow map. The range of a sun's depths is that of all casters around, because its
+        lookups depend on it."""
+        casters, epsilon = self.scene.table.casting, self.settings.epsilon
+        whole = clip_range(casters, made.camera, epsilon) if made.camera.is_orthographic else None
+        return build_view(made.casters, made.drawn, epsilon, whole, are_split=False)
+
+    @cached_property
+    def identities(self) -> Identities:
+        """The meaning of the scene's numbers."""
+        return Identities(self.scene)
+
+    @cached_property
+    def color_scale(self) -> float:
+        """Factor by which float16 sums multiply colours: a power of two that brings the scene's brightest colour to at
+        most 1."""
+        if self.plan.sum_format == "float32":
+            return 1.0
+        instances = [kind.placed for kind in self.scene.table.kinds if isinstance(kind.placed, Instance)]
+        surfels = [instance.surfels for instance in instances]  # polygons are not summed
+        textures = [t for instance in instances if instance.is_textured for t in instance.textures if t]
+        brightest = max((source.brightest for source in (*surfels, *textures)), default=0.0)
+        return math.ldexp(1.0, -math.ceil(math.log2(brightest))) if brightest > 0 else 1.0

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Instances of one kind are looked at as arrays and drawn by one call, and pictures are as if they were not."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from splat_addon.rendering import Camera, Light, Renderer, Scene, Settings, look_at, make_polygons, plan
+from splat_addon.rendering.culling.backs import show_backs
+from splat_addon.rendering.plan import batches
+from splat_addon.rendering.scene import Instance, Material, PolygonInstance
+from splat_addon.rendering.view import build_view
+from splat_addon.sampling import TriangleMesh, sample_mesh
+
+PLACES = np.array([(0, 0, 0), (1, 0, 0), (0.8, 0.3, 0.9), (0.1, 0.2, 0.8)], float)
+FACES = np.array([(0, 1, 2), (0, 2, 3)])
+CAMERA = Camera.perspective(look_at((0, -9, 4), (0, 0, 0.3)), 0.7, (40, 32))
+RED, GREEN = Material(roughness=0.2, index=1), Material(metallic=0.7, index=2)
+
+
+@pytest.fixture(scope="module")
+def shapes():
+    polygons = make_polygons(PLACES, FACES, color=(0.3, 0.6, 0.2, 1.0))
+    return {"surfels": sample_mesh(TriangleMesh(PLACES, FACES), resolution=12), "polygons": polygons}
+
+
+def field(shapes, count=24, **fields):
+    """Surfels and polygons of two kinds each, turned, stretched and some of them mirrored."""
+    random, placed = np.random.default_rng(4), {"surfels": [], "polygons": []}
+    for number in range(count):
+        kind = ("surfels", "polygons")[number % 2]
+        matrix, angle = np.eye(4), random.uniform(0, 2 * math.pi)
+        matrix[:2, :2] = (math.cos(angle), -math.sin(angle)), (math.sin(angle), math.cos(angle))
+        matrix[:3, :3] = matrix[:3, :3] @ np.diag(random.uniform(0.5, 1.5, 3) * (1, random.choice((-1, 1)), 1))
+        matrix[:2, 3] = random.uniform(-3, 3, 2)
+        made = Instance if kind == "surfels" else PolygonInstance
+        given = {"materials": (RED,) if number % 4 < 2 else (GREEN,), "name": f"{number}", "index": number}
+        placed[kind].append(made(shapes[kind], matrix, **given, **fields))
+    sun = Light("sun", energy=3, direction=(0.4, 0.3, -1), casts_shadow=True)
+    return Scene(lights=(sun,), world=(0.2,) * 3, **{kind: tuple(some) for kind, some in placed.items()})
+
+
+def test_the_table_has_what_each_instance_says(shapes):
+    scene = field(shapes)
+    table, from_eye = scene.table, scene.table.from_eye(CAMERA)
+    for row, placed in enumerate((*scene.surfels, *scene.polygons)):
+        assert table.placed[row] is placed
+        np.testing.assert_allclose(from_eye.model_views[row], placed.model_view(CAMERA), rtol=1e-12, atol=1e-12)
+        np.testing.assert_allclose(from_eye.corners[row], placed.corners(CAMERA), rtol=1e-12, atol=1e-12)
+        np.testing.assert_allclose(table.stretches[row], placed.stretches, rtol=1e-12)
+        assert table.radii[row] == placed.radius and table.counts[row] == len(placed.shape)
+    assert [kind.count for kind in table.kinds] == [6] * 4
+    assert {kind.placed.materials for kind in table.kinds} == {(RED,), (GREEN,)}
+
+
+def test_part_of_a_table_is_the_table_of_that_part(shapes):
+    scene = field(shapes)
+    some = scene.table.taken(np.array([1, 4, 13, 20]))
+    alone = Scene(surfels=(scene.surfels[1], scene.surfels[4]), polygons=(scene.polygons[1], scene.polygons[8])).table
+    for name in ("matrices", "radii", "grains", "stretches", "world_corners", "overlaps", "counts", "triangles"):
+        np.testing.assert_array_equal(getattr(some, name), getattr(alone, name), err_msg=name)
+    assert [some.placed[k] for k in range(4)] == [alone.placed[k] for k in range(4)]
+    assert some.numbers.tolist() == [1, 4, 13, 20] and len(some.kinds) == len(alone.kinds)
+
+
+def test_backs_are_seen_from_one_side_of_a_sheet(shapes):
+    above = Camera.perspective(look_at((0.4, 0.1, 5), (0.5, 0.1, 0.4), (0, 1, 0)), 0.7, (8, 8))
+    turned = np.diag((1.0, -1.0, -1.0, 1.0))
+    flat = sample_mesh(TriangleMesh(PLACES * (1, 1, 0), FACES), resolution=8)
+    table = Scene(surfels=(Instance(flat), Instance(flat, turned), Instance(flat, np.diag((1, 1, 0, 1.0))))).table
+    assert show_backs(table, above).tolist() == [False, True, False]
+
+
+CASES = {
+    "shadows": ({}, {}),
+    "16-bit": ({}, {"storage": "16-bit", "supersampling": 2}),
+    "quads": ({}, {"method": "quad", "sum_format": "float16"}),
+    "sprites": ({}, {"method": "sprites"}),
+    "split": ({"split_distance": 9.0}, {}),
+    "holdout": ({"is_holdout": True}, {}),
+    "samples": ({}, {"samples": 3, "ambient_occlusion": 1.0}),
+    "lit splats": ({}, {"lights_splats": True}),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_pictures_are_those_of_instances_drawn_one_by_one(case, shapes, on_device, monkeypatch):
+    """But for rounding: sums of splats are added in another order."""
+    fields, chosen = CASES[case]
+    outputs = ("color", "depth", "normal", "coverage", "object_index", "material_index")
+    scene, settings = field(shapes, **fields), Settings(outputs=outputs, shadow_resolution=128, **chosen)
+    alone, calls_alone = drawn(scene, settings, on_device, monkeypatch)
+    assert not plan(scene, CAMERA, settings).has("TOGETHER")
+    monkeypatch.setattr(batches, "LEAST_TOGETHER", 2)
+    together, calls = drawn(scene, settings, on_device, monkeypatch)
+    assert plan(scene, CAMERA, settings).has("TOGETHER") and calls < 0.6 * calls_alone
+    for name in outputs:
+        one, other = (getattr(frame, name) for frame in (alone, together))
+        apart = np.abs(one.astype(np.float64) - other) > 1e-4 * (1 + np.abs(one))
+        assert apart.mean() < 0.004, name
+    assert (np.ptp(alone.coverage) > 0.9) == (case != "holdout")
+
+
+def drawn(scene, settings, on_device, monkeypatch):
+    """The frame, and how many draw calls it took."""
+    calls = []
+
+    def job(device):
+        draw = device.draw_triangles
+        monkeypatch.setattr(device, "draw_triangles", lambda *given, **named: (calls.append(1), draw(*given, **named)))
+        frame = Renderer(device).render(scene, CAMERA, settings)
+        monkeypatch.setattr(device, "draw_triangles", draw)
+        return frame
+
+    return on_device(job), len(calls)
+
+
+def test_lights_of_sets_light_their_own_instances(shapes, on_device, monkeypatch):
+    """The fragment stage looks the set up."""
+    scene = field(shapes)
+    lit = replace(scene, lights=(replace(scene.lights[0], receivers=(1,)),))
+    sets = {kind: tuple(replace(i, light_set=i.index // 4 % 2) for i in getattr(lit, kind)) for kind in shapes}
+    settings = Settings(outputs=("color",), shadow_resolution=0)
+    alone, _ = drawn(replace(lit, **sets), settings, on_device, monkeypatch)
+    monkeypatch.setattr(batches, "LEAST_TOGETHER", 2)
+    together, _ = drawn(replace(lit, **sets), settings, on_device, monkeypatch)
+    np.testing.assert_allclose(together.color, alone.color, atol=1e-5)
+    assert np.abs(together.color - drawn(scene, settings, on_device, monkeypatch)[0].color).max() > 0.1
+
+
+def test_only_many_small_instances_of_one_kind_are_drawn_together(shapes):
+    items = build_view(field(shapes, 80).table, CAMERA, 0.5).placed
+    triangles = items.table.triangles.copy()
+    made = batches.batches(items, triangles)
+    assert [len(one) for one in made] == [20, 20] and made[0].table.kinds[0].placed.materials == (RED,)
+    triangles[items.table.of_kinds(lambda placed: placed.materials == (RED,))] = batches.MOST_TRIANGLES + 1
+    alone = batches.batches(items, triangles)
+    assert sorted(len(one) for one in alone) == [1] * 20 + [20]
+    assert sorted(number for one in alone for number in one.table.numbers) == items.table.numbers.tolist()
