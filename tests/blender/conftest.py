@@ -7,6 +7,7 @@ import pytest
 
 import splat_addon
 from splat_addon.blender.geometry.attributes import read_surfels
+from splat_addon.blender.translations.messages import messages
 from splat_addon.surfels import Surfels
 
 
@@ -15,6 +16,12 @@ def add_on():
     splat_addon.register()
     yield
     splat_addon.unregister()
+
+
+@pytest.fixture(scope="session")
+def interface_texts(add_on) -> set[tuple[str, str]]:
+    """(context, text) of every text of the interface; all sources are searched for them, which takes a second."""
+    return messages()
 
 
 @pytest.fixture(autouse=True)

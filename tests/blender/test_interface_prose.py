@@ -6,7 +6,7 @@ import re
 import bpy
 import pytest
 
-from splat_addon.blender.translations.messages import messages, spoken
+from splat_addon.blender.translations.messages import spoken
 from tests.test_glossary import SYNONYMS
 from tests.test_prose import RIDDLES
 
@@ -18,36 +18,38 @@ MEASURED = re.compile(
 )
 
 
-def tooltips() -> list[str]:
+@pytest.fixture(scope="module")
+def tooltips(interface_texts) -> list[str]:
     """The texts of more than five words, which explain something."""
-    return sorted({text for _, text in messages() if len(text.split()) > 5} - spoken())
+    return sorted({text for _, text in interface_texts if len(text.split()) > 5} - spoken())
 
 
-def labels() -> list[str]:
-    return sorted({text for _, text in messages() if len(text.split()) <= 5} - spoken())
+@pytest.fixture(scope="module")
+def labels(interface_texts) -> list[str]:
+    return sorted({text for _, text in interface_texts if len(text.split()) <= 5} - spoken())
 
 
 def test_sentences_that_are_put_together_are_short_and_no_riddles():
     """Reports and messages end without a full stop, as Blender's own, and may begin with a value."""
-    assert len(spoken()) > 25
-    for text in spoken():
+    texts = spoken()
+    assert len(texts) > 25
+    for text in texts:
         assert re.match(r"[A-Z{≈]", text) and not text.endswith("."), text
         assert len(text.split()) <= LONGEST_TOOLTIP_SENTENCE and not MEASURED.search(text), text
         assert not [riddle for riddle in RIDDLES if re.search(riddle, text)], text
 
 
-@pytest.mark.parametrize("pattern", RIDDLES)
-def test_tooltips_are_no_riddles(pattern):
-    assert [text for text in tooltips() if re.search(pattern, text)] == []
+def test_tooltips_are_no_riddles(tooltips):
+    assert [(text, riddle) for text in tooltips for riddle in RIDDLES if re.search(riddle, text)] == []
 
 
-@pytest.mark.parametrize("synonym", SYNONYMS)
-def test_the_interface_uses_the_terms_of_the_glossary(synonym):
-    assert [text for _, text in messages() if re.search(synonym, text, re.IGNORECASE)] == []
+def test_the_interface_uses_the_terms_of_the_glossary(interface_texts):
+    texts = {text for _, text in interface_texts}
+    assert [(text, word) for text in texts for word in SYNONYMS if re.search(word, text, re.IGNORECASE)] == []
 
 
-def test_tooltips_have_no_measured_figures():
-    assert [text for text in tooltips() if MEASURED.search(text)] == []
+def test_tooltips_have_no_measured_figures(tooltips):
+    assert [text for text in tooltips if MEASURED.search(text)] == []
 
 
 def test_a_measured_figure_is_found():
@@ -55,18 +57,18 @@ def test_a_measured_figure_is_found():
         assert MEASURED.search(text), text
 
 
-def test_tooltips_begin_with_a_capital_and_end_without_a_full_stop():
+def test_tooltips_begin_with_a_capital_and_end_without_a_full_stop(tooltips):
     """Blender's own tooltips have the same form; Blender adds the full stop."""
-    assert [text for text in tooltips() if text.endswith(".") or not re.match(r"[A-Z0-9]", text)] == []
+    assert [text for text in tooltips if text.endswith(".") or not re.match(r"[A-Z0-9]", text)] == []
 
 
-def test_sentences_of_tooltips_are_short():
-    sentences = [s for text in tooltips() for s in re.split(r"(?<=[.:;])\s+|\s\(", text)]
+def test_sentences_of_tooltips_are_short(tooltips):
+    sentences = [s for text in tooltips for s in re.split(r"(?<=[.:;])\s+|\s\(", text)]
     assert [s for s in sentences if len(s.split()) > LONGEST_TOOLTIP_SENTENCE] == []
 
 
-def test_labels_fit_the_sidebar():
-    assert [text for text in labels() if len(text) > LONGEST_LABEL] == []
+def test_labels_fit_the_sidebar(labels):
+    assert [text for text in labels if len(text) > LONGEST_LABEL] == []
 
 
 def test_every_setting_has_a_tooltip():

@@ -267,7 +267,7 @@ def ring_of_inverters(nodes, image):
 
 
 def long_chain(nodes, image):
-    links = [nodes.add("ShaderNodeMath", operation="ADD") for _ in range(500)]
+    links = [nodes.add("ShaderNodeMath", operation="ADD") for _ in range(120)]
     for node, following in pairwise(links):
         nodes.link(node, "Value", following, 0)
     nodes.link(links[-1], "Value", nodes.principled, "Base Color")

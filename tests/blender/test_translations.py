@@ -9,7 +9,7 @@ import pytest
 from splat_addon.blender import commands, translations
 from splat_addon.blender.spoken import said
 from splat_addon.blender.translations.german import GERMAN
-from splat_addon.blender.translations.messages import DEFAULT, OPERATOR, messages
+from splat_addon.blender.translations.messages import DEFAULT, OPERATOR
 
 
 def figures(text: str) -> list[str]:
@@ -17,8 +17,7 @@ def figures(text: str) -> list[str]:
     return sorted(re.sub("[.,]", "", number) for number in re.findall(r"\d(?:[\d.,]*\d)?", text))
 
 
-def test_what_is_shown_is_found():
-    found = messages()
+def test_what_is_shown_is_found(interface_texts):
     assert {
         (OPERATOR, "Convert to Surfels"),
         (DEFAULT, "Surfels"),  # the sidebar's tab
@@ -27,11 +26,11 @@ def test_what_is_shown_is_found():
         (DEFAULT, "How a splat is drawn and filtered"),
         (DEFAULT, "Leave them out, since most are errors of the scanner"),  # of an operator's choice
         (OPERATOR, "Bake Materials"),  # a button
-    } <= found
+    } <= interface_texts
 
 
-def test_every_text_is_there_in_german_and_no_other():
-    texts = {text for _, text in messages()}
+def test_every_text_is_there_in_german_and_no_other(interface_texts):
+    texts = {text for _, text in interface_texts}
     assert {"missing": texts - set(GERMAN), "left over": set(GERMAN) - texts} == {"missing": set(), "left over": set()}
     assert all(said.strip() and not said.endswith(".") for said in GERMAN.values())
 
@@ -96,11 +95,11 @@ def test_the_template_follows_no_link(tmp_path, capsys):
         link.unlink()
 
 
-def test_the_template_has_each_text_once(tmp_path):
+def test_the_template_has_each_text_once(interface_texts, tmp_path):
     file = tmp_path / "surfels.pot"
     assert commands.run(["template", str(file)]) == 0
     entries = file.read_text(encoding="utf-8").split("\n\n")[1:]
-    assert len(entries) == len(messages())
+    assert len(entries) == len(interface_texts)
     assert 'msgctxt "Operator"\nmsgid "Convert to Surfels"\nmsgstr ""' in [entry.strip() for entry in entries]
 
 
