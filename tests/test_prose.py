@@ -7,6 +7,7 @@ import re
 import subprocess
 import sys
 import tokenize
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -134,12 +135,20 @@ def test_the_glossary_has_at_most_thirty_terms():
     assert len([line for line in lines if line.startswith("| ")]) - 1 <= 30
 
 
+@cache
+def nodes(file: Path) -> list[ast.AST]:
+    """All nodes of a Python file's syntax tree, the module first."""
+    return list(ast.walk(ast.parse(file.read_text(encoding="utf-8"))))
+
+
+@cache
 def docstrings(file: Path) -> list[str]:
-    nodes = ast.walk(ast.parse(file.read_text(encoding="utf-8"))) if file.suffix == ".py" else ()
     documented = (ast.Module, ast.ClassDef, ast.FunctionDef)
-    return [doc for node in nodes if isinstance(node, documented) and (doc := ast.get_docstring(node))]
+    of_code = nodes(file) if file.suffix == ".py" else ()
+    return [doc for node in of_code if isinstance(node, documented) and (doc := ast.get_docstring(node))]
 
 
+@cache
 def comments(file: Path) -> list[str]:
     """The comments of a file; consecutive lines are one comment."""
     text = file.read_text(encoding="utf-8")
@@ -174,7 +183,7 @@ def test_what_a_test_holds_is_said_in_sentences():
     fragments = [
         f"{file.relative_to(ROOT)}: {node.name}: {sentence!r}"
         for file in sorted((ROOT / "tests").rglob("test_*.py"))
-        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8")))
+        for node in nodes(file)
         if isinstance(node, ast.FunctionDef) and node.name.startswith("test_")
         for sentence in sentences(ast.get_docstring(node) or "")
         if not is_sentence(sentence)
@@ -190,13 +199,10 @@ def test_a_fragment_is_found(text):
 def test_docstrings_begin_with_a_short_sentence_and_end_one():
     bad = []
     for file in SOURCES:
+        is_operator = "_OT_" in file.read_text(encoding="utf-8")
         for text in docstrings(file):
             first = re.split(r"(?<=[.:;])\s", " ".join(text.split("\n\n")[0].split()))[0]
-            ends = (
-                text.rstrip()[-1] in ".:`)|\"'"
-                or "_OT_" in file.read_text(encoding="utf-8")
-                or text.rstrip().count("\n")
-            )
+            ends = text.rstrip()[-1] in ".:`)|\"'" or is_operator or text.rstrip().count("\n")
             if len(first.split()) > LONGEST_SUMMARY or not ends:
                 bad.append(f"{file.relative_to(ROOT)}: {text[:80]!r}")
     assert bad == []
