@@ -61,3 +61,6 @@ class Frame:
 OUTPUTS = tuple(f.name for f in fields(Frame) if f.name != "stats")
 #: array -> the pixel texture that stores it, and its place in the last axis
 HELD_BY = {f.name: f.metadata["held_by"] for f in fields(Frame) if f.metadata}
+#: array of numbers -> the shape of what it holds of a pixel
+CHANNELS = {name: () for name in OUTPUTS if name != "cryptomatte"}
+CHANNELS |= {"color": (4,)} | dict.fromkeys(("normal", "position", "diffuse_color", "emission", "shadow"), (3,))

@@ -17,14 +17,14 @@ from dataclasses import dataclass, fields, is_dataclass
 
 import numpy as np
 
-from ..array_files import opened_arrays, write_arrays
-from ..surfels import empty_surfels
+from ..array_files import StoredArrays, opened_arrays, write_arrays
+from ..surfels import LAYOUT, OPTIONAL_LAYOUT, empty_surfels
 from .ldc.depth_cube import surface_of
 from .ldc.scan_conversion import Spans, expand
 from .mesh.triangle_mesh import TriangleMesh
 from .options import SamplingOptions
 from .progress import Progress, stage
-from .refine.flat_blocks import Large
+from .refine.flat_blocks import BLOCKS, Large
 from .refine.missed_components import SampledSurface, missed_components
 from .sample import Sampling, SamplingRun
 
@@ -82,11 +82,33 @@ def joined_blocks(mesh: TriangleMesh, blocks: Iterable[Block], progress: Progres
         raise ValueError(f"Each of the {count} blocks must be given once, but these were given: {there}.")
     if run.is_empty:
         return Sampling(empty_surfels())
+    for block in blocks:
+        if not _belongs(block, run, blocks[0]):
+            raise ValueError(f"Block {block.number + 1} is damaged: its samples do not fit the mesh; convert it again.")
     images, arrays = _in_order(blocks)
     large = {edge: _joined([block.large[edge] for block in blocks]) for edge in blocks[0].large}
     surface = surface_of(run.mesh.triangles, images, len(run.mesh.positions))
     missed = missed_components(run.mesh, surface)
     return run.finished(arrays, images, large, missed, stage(progress, 0.0, 1.0))
+
+
+def _belongs(block: Block, run: SamplingRun, first: Block) -> bool:
+    """Whether all samples of a block lie in triangles and cells of the run, as those that were made from it do, and
+    whether it has the fields and the sizes of large samples of the first block."""
+    if (
+        {*block.arrays} != {*first.arrays}
+        or not {*block.arrays} >= {*LAYOUT}
+        or block.large.keys() != first.large.keys()
+    ):
+        return False
+    for spans in (*block.images, *(spans for images in block.large.values() for spans in images)):
+        ends = spans.columns.astype(np.int64) + spans.counts - 1
+        for values, most in ((spans.triangles, len(run.mesh) - 1), (spans.rows, run.grid.size), (ends, run.grid.size)):
+            if (values < 0).any() or (values > most).any():
+                return False
+        if (spans.columns < 0).any():
+            return False
+    return True
 
 
 def _joined(parts: list[tuple[Spans, ...]]) -> tuple[Spans, ...]:
@@ -177,29 +199,42 @@ def read_block(path: str | os.PathLike, turn: int = 0) -> Block:
     """Read the block of one mesh, by its place in the list, from a file that `write_blocks` made. Raises OSError, and
     ValueError with one sentence for a damaged file."""
     with opened_arrays(path, *_KIND) as arrays:
-        number, count = arrays[f"{turn}.about"].tolist()
-        names = [name.removeprefix(f"{turn}.") for name in arrays.files if name.startswith(f"{turn}.")]
-        edges = sorted((int(name.split(".")[0]) for name in names if name.endswith(".0.rows")), reverse=True)
-        large = {
-            edge: tuple(Spans(*(arrays[f"{turn}.{edge}.{axis}.{f.name}"] for f in fields(Spans))) for axis in range(3))
-            for edge in edges
-        }
-        made_from = bytes(arrays[f"{turn}.made_from"]).hex()
-    stored = [name.removeprefix("surfels.") for name in names if name.startswith("surfels.")]
-    return Block(number, count, made_from, large.pop(1), large, _InFile(path, f"{turn}.surfels.", stored))
+        number, count = arrays.take(f"{turn}.about", np.int64, (2,)).tolist()
+        made_from = arrays.take(f"{turn}.made_from", np.uint8, (32,)).tobytes().hex()
+        edges = [edge for edge in (1, *sorted(BLOCKS, reverse=True)) if f"{turn}.{edge}.0.rows" in arrays]
+        large = {edge: tuple(_spans(arrays, f"{turn}.{edge}.{axis}.", edge) for axis in range(3)) for edge in edges}
+        images, prefix = large.pop(1), f"{turn}.surfels."
+        stored = [name.removeprefix(prefix) for name in arrays.names if name.startswith(prefix)]
+        total = sum(int(spans.counts.sum(dtype=np.int64)) for spans in images)
+        if not 0 <= number < count or not _LAYOUTS.keys() >= {*stored} or (stored and not {*stored} >= {*LAYOUT}):
+            raise ValueError("It has other fields, or a number out of range.")
+    return Block(number, count, made_from, images, large, _InFile(path, prefix, stored, total))
+
+
+def _spans(arrays: StoredArrays, prefix: str, edge: int) -> Spans:
+    """Stored spans, of large samples one each. Raises ValueError if they are none."""
+    spans = Spans(*(arrays.take(f"{prefix}{f.name}", np.int32, (-1,)) for f in fields(Spans)))
+    if len({len(getattr(spans, f.name)) for f in fields(Spans)}) > 1 or (spans.counts < 1).any():
+        raise ValueError("The spans differ in length, or some are empty.")
+    if edge > 1 and (spans.counts > 1).any():
+        raise ValueError("A span of large samples has several.")
+    return spans
 
 
 @dataclass(frozen=True, eq=False)
 class _InFile(Mapping):
-    """Arrays that are read from a file of blocks each time they are asked for. prefix: of their names in the file."""
+    """Arrays that are read from a file of blocks each time they are asked for. prefix: of their names in the file.
+    total: the number of samples."""
 
     path: str | os.PathLike
     prefix: str
     names: list[str]
+    total: int
 
     def __getitem__(self, name: str) -> np.ndarray:
+        columns, kind = _LAYOUTS[name]
         with opened_arrays(self.path, *_KIND) as arrays:
-            return arrays[self.prefix + name]
+            return arrays.take(self.prefix + name, kind, (self.total, columns) if columns > 1 else (self.total,))
 
     def __iter__(self) -> Iterator[str]:
         return iter(self.names)
@@ -211,8 +246,13 @@ class _InFile(Mapping):
 def read_request(path: str | os.PathLike) -> dict:
     """Read only the request of such a file. Raises the exceptions of `read_block`."""
     with opened_arrays(path, *_KIND) as arrays:
-        return json.loads(bytes(arrays["request"]))
+        request = json.loads(arrays.take("request", np.uint8, (-1,)).tobytes())
+        if not isinstance(request, dict):
+            raise ValueError("The request is no dictionary.")
+    return request
 
 
+#: field of `Surfels` -> its number of columns and type
+_LAYOUTS = {name: (columns, kind) for name, (columns, kind, *_) in {**LAYOUT, **OPTIONAL_LAYOUT}.items()}
 #: what the file should be, and what to do if it is not
 _KIND = "a file of blocks", "convert the block again"

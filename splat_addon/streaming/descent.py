@@ -125,7 +125,7 @@ def _errors(blocks: Blocks, rows: np.ndarray, sight: Sight, beside: float | None
 
 def _pixels_all_round(blocks: Blocks, rows: np.ndarray, sight: Sight) -> np.ndarray:
     """(n,) largest error of each block in pixels, whatever direction the eye looks in."""
-    error = blocks.errors[rows].max(axis=1, initial=0.0) * sight.pixels
+    error = blocks.errors[rows].max(axis=1, initial=0.0).astype(np.float64) * sight.pixels
     if sight.is_parallel:
         return error
     apart = np.maximum(np.maximum(blocks.low[rows] - sight.eye[:3], sight.eye[:3] - blocks.high[rows]), 0)

@@ -91,11 +91,11 @@ class Stream:
             self.table = Table(self.file, most_bytes)
             self.pages = Pages(self.file, self.table, most_bytes)
             self.roots = self._gathered(np.arange(self.file.roots))
-        except _Unusable:
+        except BaseException as error:
+            why = self.file.fault()
             self.close()
-            raise ValueError(self.file.fault()) from None
-        except BaseException:
-            self.close()
+            if isinstance(error, _Unusable):
+                raise ValueError(why) from None
             raise
 
     def __len__(self) -> int:
@@ -112,8 +112,8 @@ class Stream:
         more, these. It is read from the file, whatever the memory. Raises OSError with a sentence if that fails."""
         blocks, drawn = self.table.blocks, np.arange(self.file.roots)
         everything = np.array([[0, 0, 0, 1.0]])
-        while (blocks.first_child[drawn] < blocks.last_child[drawn]).any():
-            error = float(blocks.errors[drawn].max()) / 2
+        while len(coarse := drawn[blocks.first_child[drawn] < blocks.last_child[drawn]]):
+            error = float(blocks.errors[coarse].max()) / 2
             sight = Sight(everything, np.zeros(4), 1.0, 0.0, np.array([0, 0, 1.0, 0]), False, error)
             cut = descend(self.table, Readable(self.pages), sight, None)
             if cut.is_torn:

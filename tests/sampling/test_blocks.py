@@ -161,6 +161,55 @@ def _no_json(file):
         np.savez(stream, **{"request": np.frombuffer(b"{", np.uint8), "0.about": np.arange(3)})
 
 
+def _says(name, head, numbers=bytes(64), packing=zipfile.ZIP_STORED):
+    """Give an array another header, and other numbers."""
+
+    def damage(file):
+        with zipfile.ZipFile(file) as archive:
+            members = {member: archive.read(member) for member in archive.namelist()}
+        members[name] = b"\x93NUMPY\x01\x00" + (len(head) + 1).to_bytes(2, "little") + head + b"\n" + numbers
+        with zipfile.ZipFile(file, "w", packing) as archive:
+            for member, data in members.items():
+                archive.writestr(member, data)
+
+    return damage
+
+
+def _head(kind, *shape):
+    return repr({"descr": kind, "fortran_order": False, "shape": shape}).encode()
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        _says("0.made_from.npy", _head("|O", 4)),
+        _says("0.made_from.npy", _head("<U8", 2)),
+        _says("0.made_from.npy", _head("|u1", 32), bytes(32), zipfile.ZIP_DEFLATED),
+        _says("0.1.0.rows.npy", _head("<i4", 1 << 40)),
+        _says("0.1.0.rows.npy", _head("<i4", -1)),
+        _says("0.1.0.counts.npy", _head("<i4", 16)),
+        _says("0.about.npy", _head("<i8", 2), np.array([5, 2]).tobytes()),
+    ],
+)
+def test_types_and_counts_of_a_file_are_not_believed(damage, rubble, tmp_path):
+    file = tmp_path / "block"
+    write_blocks(file, [sample_block(rubble, 0, 2, resolution=5)])
+    damage(file)
+    tracemalloc.start()
+    with pytest.raises(ValueError, match="is damaged or is not a file of blocks"):
+        read_block(file)
+    assert tracemalloc.get_traced_memory()[1] < 10e6
+    tracemalloc.stop()
+
+
+@pytest.mark.parametrize(("name", "value"), [("triangles", 2000), ("rows", 21), ("columns", -1)])
+def test_samples_beside_the_mesh_are_refused(name, value, rubble):
+    block = sample_block(rubble, 0, 1, resolution=20)
+    getattr(block.images[1], name)[3] = value
+    with pytest.raises(ValueError, match="Block 1 is damaged: its samples do not fit the mesh; convert it again"):
+        joined_blocks(rubble, [block], resolution=20)
+
+
 @pytest.mark.parametrize("damage", [_text, _cut, _one_array, _no_json])
 @pytest.mark.parametrize("read", [read_block, read_request])
 def test_a_damaged_file_is_named(damage, read, rubble, tmp_path):

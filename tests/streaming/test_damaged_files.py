@@ -165,6 +165,14 @@ def test_blocks_with_several_parents_cannot_make_a_descent_long_or_large(edited)
     tracemalloc.stop()
 
 
+def test_surfels_of_an_endless_error_do_not_make_the_choice_of_the_coarsest_endless(edited):
+    def wrong(parts):
+        leaves = parts.arrays["first_child"] == parts.arrays["last_child"]
+        parts.arrays["errors"][leaves] = 3e38
+
+    assert len(Stream(edited(wrong), 0).at_most(10**9)) == 12_000
+
+
 @pytest.mark.parametrize("name", ["rows", "first_child", "low"])
 def test_a_flipped_bit_is_noticed_and_makes_few_surfels_coarser(name, sound, path, whole):
     parts = EditedBlocks(sound)
@@ -181,6 +189,11 @@ def test_a_flipped_bit_is_noticed_and_makes_few_surfels_coarser(name, sound, pat
         stream.at_most(10**9)
     with pytest.raises(ValueError, match=r"a.surfelblocks is damaged"):
         check(path)
+
+
+def test_a_root_that_is_no_surfel_is_refused(edited):
+    with pytest.raises(ValueError, match=r"a.surfelblocks is damaged"):
+        Stream(edited(lambda parts: parts.arrays["rows"]["rotations"].__setitem__(-1, np.nan)), 0)
 
 
 def test_rows_that_are_no_surfels_are_drawn_coarser(edited):

@@ -44,11 +44,14 @@ class EditedBlocks:
             sums.append(0)
             for array in arrays:
                 sums[-1] = zlib.crc32(array[start : start + PAGE].tobytes(), sums[-1])
-        entry, packed = self.directory["arrays"].get(name), np.array(sums, SUM).tobytes()
-        if (
-            isinstance(entry, dict)
-            and isinstance(entry.get("offset"), int)
-            and 0 <= entry["offset"] <= self._end - len(packed)
-        ):
+        entry, packed = self._entry(name), np.array(sums, SUM).tobytes()
+        if type(entry.get("offset")) is int and 0 <= entry["offset"] <= self._end - len(packed):
             self._data[entry["offset"] : entry["offset"] + len(packed)] = packed
             entry["checksum"] = zlib.crc32(packed)
+
+    def _entry(self, name: str) -> dict:
+        """What the directory says of an array; nothing, if it is damaged there."""
+        found = self.directory
+        for key in ("arrays", name):
+            found = found.get(key) if isinstance(found, dict) else None
+        return found if isinstance(found, dict) else {}

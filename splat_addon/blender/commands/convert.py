@@ -108,6 +108,17 @@ def request_of(sources: list[bpy.types.Object], options: argparse.Namespace) -> 
     return {**given, "names": [each.name for each in sources]}
 
 
+def is_request(values: dict) -> bool:
+    """Whether values from a file are what `request_of` makes."""
+    lists = [values.get("names"), *([values["objects"]] if values.get("objects") is not None else [])]
+    numbers = [(kind, values[name]) for name, kind in _DENSITIES.items() if values.get(name) is not None]
+    return (
+        values.keys() == {"objects", "names", *_DENSITIES}
+        and all(isinstance(names, list) and all(isinstance(name, str) for name in names) for names in lists)
+        and all(type(value) is kind and abs(value) < 2**31 for kind, value in numbers)
+    )
+
+
 def result(options: argparse.Namespace) -> Path:
     """The path of the result; in a folder it is called after the .blend. Raises ValueError if it is not a .blend."""
     return file_at(options.out, ".blend", f"{Path(bpy.data.filepath).stem}-surfels")

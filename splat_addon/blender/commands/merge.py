@@ -21,6 +21,7 @@ from .convert import (
     batch_of,
     block_file,
     is_blend_there,
+    is_request,
     place,
     refuse,
     request_of,
@@ -162,6 +163,8 @@ def _join(files: list[Path]) -> None:
 def _converted(files: list[Path]) -> tuple[argparse.Namespace, list[bpy.types.Object]]:
     """The options with which all blocks were converted, and the objects. Raises ValueError if these differ."""
     request = read_request(files[0])
+    if not is_request(request):
+        raise ValueError(f"{files[0]} is damaged or is not a file of blocks; convert the block again.")
     for file in files:
         if read_request(file) != request:
             raise ValueError(

@@ -14,9 +14,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...array_files import opened_arrays, write_arrays
+from ...array_files import StoredArrays, opened_arrays, write_arrays
 from ..cryptomatte import Cryptomatte
-from ..frame import Frame
+from ..frame import CHANNELS, Frame
 from ..settings import OUTPUTS
 
 _VERSION = 1
@@ -65,7 +65,7 @@ def joined_parts(paths: Iterable[str | os.PathLike], size: tuple[int, int], numb
     wholes: dict[tuple[str, str], dict] = {}
     for path in paths:
         with opened_arrays(path, "a part of a picture", "draw it again") as arrays:
-            about = json.loads(bytes(arrays["about"]))
+            about = _about(arrays)
             objection = _objection(about, size, number, wholes)
             if not objection:
                 x, y, width, height = about["place"]
@@ -78,6 +78,24 @@ def joined_parts(paths: Iterable[str | os.PathLike], size: tuple[int, int], numb
         missing, twice = np.count_nonzero(covered == 0), np.count_nonzero(covered > 1)
         raise ValueError(f"The parts leave {missing:,} pixels empty and cover {twice:,} twice; draw them again.")
     return {name: Frame(**{output: whole.get(output) for output in OUTPUTS}) for name, whole in wholes.items()}
+
+
+def _about(arrays: StoredArrays) -> dict:
+    """What a part says of itself. Raises ValueError if any of it has another type, or the part does not lie in its
+    picture."""
+    about = json.loads(arrays.take("about", np.uint8, (-1,)).tobytes())
+    for name, count in (("size", 2), ("place", 4)):
+        if len(about[name]) != count or any(type(value) is not int for value in about[name]):
+            raise ValueError(f"The {name} is {about[name]!r}.")
+    x, y, width, height = about["place"]
+    if min(x, y) < 0 or min(width, height) < 1 or x + width > about["size"][0] or y + height > about["size"][1]:
+        raise ValueError(f"The place is {about['place']!r}.")
+    if any(len(name) != 2 or any(type(word) is not str for word in name) for name in about["frames"]):
+        raise ValueError(f"The frames are {about['frames']!r}.")
+    for name, bits in (pair for names in about["names"] for pair in names.items()):
+        if type(bits) is not int or not 0 <= bits <= 0xFFFFFFFF:
+            raise ValueError(f"The name {name!r} has the number {bits!r}.")
+    return about
 
 
 def _objection(about: dict, size, number: int, wholes: dict) -> str | None:
@@ -95,17 +113,21 @@ def _objection(about: dict, size, number: int, wholes: dict) -> str | None:
     return None
 
 
-def _put(whole: dict, arrays, turn: int, place, size: tuple[int, int], names: dict[str, int]) -> None:
-    """Copy the part's arrays into those of the whole picture."""
+def _put(whole: dict, arrays: StoredArrays, turn: int, place, size: tuple[int, int], names: dict[str, int]) -> None:
+    """Copy the part's arrays into those of the whole picture. Raises ValueError if one has another type or shape."""
     x, y, width, height = place
-    for output in OUTPUTS:
+    for output, channels in CHANNELS.items():
         if f"{turn}.{output}" in arrays:
-            values = arrays[f"{turn}.{output}"]
+            values = arrays.take(f"{turn}.{output}", np.float32, (height, width, *channels))
             if output not in whole:
-                whole[output] = np.zeros((*size[::-1], *values.shape[2:]), np.float32)
+                whole[output] = np.zeros((*size[::-1], *channels), np.float32)
             whole[output][y : y + height, x : x + width] = values
     if f"{turn}.keys" in arrays:
-        matte = Cryptomatte((width, height), arrays[f"{turn}.keys"], arrays[f"{turn}.shares"], names)
+        keys = arrays.take(f"{turn}.keys", np.uint64, (-1,))
+        shares = arrays.take(f"{turn}.shares", np.float64, keys.shape)
+        if (keys[1:] <= keys[:-1]).any() or (len(keys) and int(keys[-1]) >> 32 >= width * height):
+            raise ValueError("The keys are not in order, or belong to other pixels.")
+        matte = Cryptomatte((width, height), keys, shares, names)
         row, column = np.divmod(np.arange(width * height), width)
         moved = matte.looked_up(size, (row + y) * size[0] + column + x, row * width + column)
         whole["cryptomatte"] = whole["cryptomatte"].plus(moved) if "cryptomatte" in whole else moved

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The process that reads damaged files of a format: `python -m bench.fuzz.reading FORMAT SEED FIRST STOP FOLDER`.
+
+It prints a line of JSON for each file: its number, what became of it, what was said, and the megabytes so far.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import faulthandler
+import json
+import linecache
+import os
+import signal
+import sys
+import warnings
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+from bench.fuzz.formats import FORMATS, Coarser
+
+try:
+    import resource
+except ImportError:  # Windows, where nothing limits memory
+    resource = None
+
+#: Bytes that a process may take besides what it has, and seconds of processor time for a file.
+_MEMORY, _SECONDS = 1 << 30, 5.0
+
+
+def main(name: str, seed: int, first: int, stop: int, out: Path) -> None:
+    faulthandler.enable()
+    warnings.simplefilter("ignore")
+    with TemporaryDirectory() as folder:
+        kind = FORMATS[name](Path(folder))
+        _limit_memory()
+        for number in range(first, stop):
+            random = np.random.default_rng([seed, number])
+            file = kind.damaged(random)
+            _allow(_SECONDS)
+            outcome, text = _outcome(kind, file, random)
+            _allow(0.0)
+            if outcome not in ("read", "coarser", "refused"):
+                (out / f"{name}-{number}{kind.suffix}").write_bytes(file)
+            print(json.dumps([number, outcome, text[:500], _megabytes()]), flush=True)
+
+
+def _outcome(kind, file: bytes, random) -> tuple[str, str]:
+    try:
+        is_finite = all(np.isfinite(array).all() for array in kind.read(file, random))
+    except Coarser as error:
+        return "coarser", str(error)
+    except MemoryError:
+        return "memory", _place(sys.exc_info()[2])
+    except (OSError, ValueError) as error:
+        is_worded = _is_raised_here(error) and str(error).endswith(".")
+        return (
+            "refused" if is_worded else "unworded"
+        ), f"{type(error).__name__}: {error} {_place(error.__traceback__)}"
+    except Exception as error:
+        return "unworded", f"{type(error).__name__}: {error} {_place(error.__traceback__)}"
+    return ("read", "") if is_finite else ("not finite", "")
+
+
+def _last(trace):
+    while trace.tb_next:
+        trace = trace.tb_next
+    return trace.tb_frame.f_code.co_filename, trace.tb_lineno
+
+
+def _place(trace) -> str:
+    file, line = _last(trace)
+    return f"({Path(file).name}:{line})"
+
+
+def _is_raised_here(error: Exception) -> bool:
+    """Whether the extension raised an error itself: then it has a sentence."""
+    file, line = _last(error.__traceback__)
+    return "splat_addon" in Path(file).parts and linecache.getline(file, line).strip().startswith("raise ")
+
+
+def _allow(seconds: float) -> None:
+    """End the process after this much processor time; 0: do not."""
+    if hasattr(signal, "setitimer"):
+        signal.setitimer(signal.ITIMER_PROF, seconds)
+
+
+def _limit_memory() -> None:
+    with contextlib.suppress(OSError, AttributeError):
+        pages = int(Path("/proc/self/statm").read_text().split()[0])
+        most = pages * os.sysconf("SC_PAGE_SIZE") + _MEMORY
+        resource.setrlimit(resource.RLIMIT_AS, (most, most))
+
+
+def _megabytes() -> int:
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1000 if resource else 0
+
+
+if __name__ == "__main__":
+    name, seed, first, stop, out = sys.argv[1:]
+    main(name, int(seed), int(first), int(stop), Path(out))
