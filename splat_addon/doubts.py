@@ -4,6 +4,8 @@ picture, or one colour, without a word. It sits in the bottom layer beside `surf
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from .surfels import Surfels
@@ -18,6 +20,9 @@ _MANY = 0.5
 #: cover everything.
 _TINY, _HUGE = 1e-7, 1.0
 
+#: The relative rounding of float32, and how far it may move surfels, in their smaller half-axes.
+_ROUNDING, _VISIBLE = 2.0**-24, 0.1
+
 #: A few surfels may well be larger than what they span.
 _FEWEST = 16
 
@@ -29,7 +34,8 @@ def doubts(surfels: Surfels) -> list[str]:
     """A sentence about each."""
     if not len(surfels):
         return []
-    return [*doubts_of_transparency(clear_count(surfels), len(surfels)), *_of_size(surfels), *_of_place(surfels)]
+    transparency = doubts_of_transparency(clear_count(surfels), len(surfels))
+    return [*transparency, *(_of_size(surfels) or doubts_of_rounding([surfels])), *_of_place(surfels)]
 
 
 def clear_count(surfels: Surfels) -> int:
@@ -42,6 +48,23 @@ def doubts_of_transparency(clear: int, total: int) -> list[str]:
     if clear <= _MANY * total:
         return []
     return [f"{clear:,} of {total:,} surfels are fully transparent (alpha 0), so that nobody sees them"]
+
+
+def doubts_of_rounding(parts: Sequence[Surfels]) -> list[str]:
+    """A sentence if some surfels lie so far from the origin of the first set that float32 moves them visibly when they
+    are kept relative to it, or nothing."""
+    parts = [part for part in parts if len(part)]
+    if not parts:
+        return []
+    ends = [part.origin - parts[0].origin + end for part in parts for end in part.local_bounds]
+    farthest = float(np.abs(ends).max())
+    rounding, size = farthest * _ROUNDING, min(float(np.median(part.scales.min(axis=1))) for part in parts)
+    if not rounding > _VISIBLE * size:
+        return []
+    return [
+        f"Positions are rounded by up to {rounding:.2g}, because surfels with half-axes of {size:.2g} lie up to "
+        f"{farthest:,.0f} from the others; keep them in sets of their own"
+    ]
 
 
 def _of_size(surfels: Surfels) -> list[str]:

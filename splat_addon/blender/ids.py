@@ -34,6 +34,10 @@ POINTS_PANEL = "VIEW3D_PT_surfels_from_points"
 #: Nodes drop it, which is right: what they make may be open.
 SOLID = "surfels_solid"
 
+#: Custom property of a surfel mesh: the three float64 that are added to its positions, because the object's location,
+#: which is float32, cannot hold the whole origin of the surfels. Without it, they are 0.
+OFFSET = "surfels_offset"
+
 #: Custom property of a surfel mesh: the 9 numbers of `working_space.to_xyz` when its colours were written. When the
 #: working space changes, Blender converts no colour attributes of floats.
 PRIMARIES = "surfels_primaries"

@@ -10,6 +10,9 @@ import numpy as np
 #: White in a file of integer colours: 255, unless a value needs more.
 _WHITES = (255, 65535)
 
+#: The comment of files that this extension wrote.
+VERSION = "surfel_splatting 1"
+
 POSITION = ("x", "y", "z")
 NORMAL = ("nx", "ny", "nz")
 ROTATION = ("rot_0", "rot_1", "rot_2", "rot_3")
@@ -57,6 +60,33 @@ def matrix(columns: dict[str, np.ndarray], names: tuple[str, ...], dtype=np.floa
     """(N, len(names)); values out of the range of `dtype` become infinite, so that later checks reject them."""
     with np.errstate(over="ignore", invalid="ignore"):
         return np.stack([columns[name].astype(dtype) for name in names], axis=1)
+
+
+def origin_for(positions: np.ndarray) -> np.ndarray:
+    """(3,) float64 an origin for (N, 3) finite float64 positions: 0, or the middle of their bounds if they are more
+    precise than float32, as in files of double coordinates. It is rounded to float32, as a Blender object's location.
+    """
+    with np.errstate(over="ignore"):
+        if not len(positions) or (positions.astype(np.float32) == positions).all():
+            return np.zeros(3)
+        middle = (positions.min(axis=0) / 2 + positions.max(axis=0) / 2).astype(np.float32).astype(np.float64)
+    return middle if np.isfinite(middle).all() else np.zeros(3)
+
+
+def numbers_of(comments: tuple[str, ...], word: str) -> np.ndarray | None:
+    """(3,) float64 that a comment of this extension gives after a word; None if there is none. Raises ValueError if
+    they are not 3 finite numbers."""
+    for comment in comments if VERSION in comments else ():
+        first, *values = comment.split()[:5] or [""]
+        if first == word:
+            try:
+                numbers = np.array([float(value) for value in values])
+            except ValueError:
+                numbers = np.empty(0)
+            if numbers.shape != (3,) or not np.isfinite(numbers).all():
+                raise ValueError(f"The PLY file's comment {comment[:80]!r} must hold 3 finite numbers; correct it.")
+            return numbers
+    return None
 
 
 def as_columns(names: tuple[str, ...], values: np.ndarray) -> dict[str, np.ndarray]:

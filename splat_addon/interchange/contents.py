@@ -6,12 +6,18 @@ from __future__ import annotations
 import os
 from dataclasses import replace
 
-from .columns import FLOAT_COLORS, Columns
-from .gaussian_ply import gaussians, is_gaussians, with_usual_names
+import numpy as np
+
+from .columns import FLOAT_COLORS, POSITION, Columns
+from .gaussian_forms import with_usual_names
+from .gaussian_ply import gaussians, is_gaussians
 from .gaussians import DEFAULT_FLATNESS, Gaussians
 from .ply_file import read_vertices
 from .point_ply import Points, points
 from .surfel_ply import StoredSurfels, is_surfels, stored_surfels
+
+#: Of how many steps of their own precision the extent of coordinates consists at least, unless they were rounded.
+_FEWEST_STEPS = 1e5
 
 
 def read_contents(
@@ -31,12 +37,30 @@ def read_contents(
     read, comments, others = read_vertices(path)
     columns = Columns(with_usual_names(read))
     if is_gaussians(columns):
-        contents = gaussians(columns, flatness, float_colors)
+        contents = gaussians(columns, comments, flatness, float_colors)
     elif is_surfels(columns):
         contents = stored_surfels(columns, comments, float_colors)
     else:
         contents = points(columns, float_colors)
-    return replace(contents, said=(*contents.said, *columns.passed_over(), *_left_out(others)))
+    said = (*contents.said, *_coarse_steps(columns), *columns.passed_over(), *_left_out(others))
+    return replace(contents, said=said)
+
+
+def _coarse_steps(columns: dict[str, np.ndarray]) -> list[str]:
+    """A sentence about coordinates that were rounded before they came into the file, or nothing."""
+    axes = [columns[name] for name in POSITION]
+    finite = [axis[np.isfinite(axis)] for axis in axes if axis.dtype.kind == "f"]
+    if not all(map(len, finite)) or not finite:
+        return []
+    step = max(float(np.spacing(np.abs(axis).max())) for axis in finite)
+    extent = max(float(np.ptp(axis.astype(np.float64))) for axis in finite)
+    if not extent or extent > _FEWEST_STEPS * step:
+        return []
+    farthest = max(float(np.abs(axis).max()) for axis in finite)
+    return [
+        f"The file's positions go in steps of {step:.2g}, because it holds coordinates up to {farthest:,.0f} as "
+        f"{8 * axes[0].dtype.itemsize}-bit numbers; write double ones, or take an offset from them first"
+    ]
 
 
 def _left_out(others: dict[str, int]) -> list[str]:

@@ -48,8 +48,8 @@ def followed(surfels: Surfels, rest: np.ndarray) -> tuple[Surfels, int]:
     """The surfels with frames, sizes and normals moved as their centres were, and the number of centres that were moved
     individually, whose frames are left alone.
 
-    surfels: as they are stored, with an origin of 0.
-    rest: (N, 3) the centres at the time when the frames were right.
+    surfels: as they are stored. Their origin, which was not moved with the centres, is moved in their positions.
+    rest: (N, 3) the centres at the time when the frames were right, relative to the same origin.
     """
     if np.array_equal(surfels.positions, rest):
         return surfels, 0
@@ -164,3 +164,4 @@ def _move(arrays: dict, surfels: Surfels, rows: np.ndarray, affine: np.ndarray) 
     for name, values in arrays.items():
         if name != "positions":
             values[rows] = moved[name]
+    arrays["positions"][rows] += (linear[:3, :3] @ surfels.origin - surfels.origin).astype(np.float32)

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..quaternions import quaternion_axes
 from ..surfels import Surfels, valid_surfels
-from .columns import srgb_to_linear
+from .columns import origin_for, srgb_to_linear
 
 #: The spherical harmonic of degree 0, 1 / (2 sqrt(pi)).
 SH_DEGREE_0 = 0.28209479177387814
@@ -86,7 +86,7 @@ def flat_gaussians(
     kept = np.flatnonzero(flat)
     positions = positions[kept]
     finite = positions[np.isfinite(positions).all(axis=1)]
-    origin = (finite.min(axis=0) + finite.max(axis=0)) / 2 if len(finite) and _needs_origin(finite) else np.zeros(3)
+    origin = origin_for(finite)
     rotations, scales = _flat_frames(rotations[kept], sigmas[kept])
     with np.errstate(over="ignore", invalid="ignore"):
         surfels, lost = valid_surfels(
@@ -145,9 +145,3 @@ def _normals(normals: np.ndarray | None, rotations: np.ndarray) -> np.ndarray:
     with np.errstate(invalid="ignore", divide="ignore"):
         flat = quaternion_axes(rotations / np.linalg.norm(rotations, axis=1, keepdims=True))[2]
     return flat if normals is None else np.where((normals != 0).any(axis=1)[:, None], normals, flat)
-
-
-def _needs_origin(positions: np.ndarray) -> bool:
-    """Whether positions are more precise than float32, as in files with double coordinates."""
-    with np.errstate(over="ignore"):
-        return bool((positions.astype(np.float32) != positions).any())

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -62,12 +63,28 @@ def transformed(surfels: Surfels, matrix: np.ndarray) -> Surfels:
     )
 
 
+def parts_of(surfels: Surfels | Sequence[Surfels]) -> list[Surfels]:
+    """One set, or several, as a list."""
+    return [surfels] if isinstance(surfels, Surfels) else list(surfels)
+
+
+def world_positions(parts: list[Surfels]) -> np.ndarray:
+    """(N, 3) float64 positions of several sets, origins included."""
+    return np.concatenate([part.positions + part.origin for part in parts]) if parts else np.empty((0, 3))
+
+
 def joined(parts: list[Surfels]) -> Surfels:
-    """Join several sets; if their origins differ, all are moved to the first one's."""
+    """Join several sets; if their origins differ, all are moved to the first one's, which rounds positions far from it
+    (`world_positions` does not)."""
     if not parts:
         return empty_surfels()
     origin = parts[0].origin
-    return concatenate([replace(p, origin=origin, positions=p.positions + (p.origin - origin)) for p in parts])
+    return concatenate(
+        [
+            p if (p.origin == origin).all() else replace(p, origin=origin, positions=p.positions + (p.origin - origin))
+            for p in parts
+        ]
+    )
 
 
 def _unit(vectors: np.ndarray) -> np.ndarray:

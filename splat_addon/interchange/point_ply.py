@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .columns import NORMAL, POSITION, has, matrix
-from .gaussian_ply import color_and_opacity, lacks_of_gaussians
+from .gaussian_forms import color_and_opacity, lacks_of_gaussians
 
 #: A property of SuperSplat's compressed files.
 _PACKED = "packed_position"

@@ -20,17 +20,30 @@ Comments: "surfel_splatting 1"; "origin X Y Z" if it is not 0; "solid" if the su
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from ..doubts import clear_count, doubts_of_transparency
 from ..surfels import LAYOUT, OPTIONAL_LAYOUT, Surfels, faults_of, valid_surfels
-from .columns import NORMAL, POSITION, ROTATION, as_columns, display_color, has, linear_to_srgb, matrix
+from .columns import (
+    NORMAL,
+    POSITION,
+    ROTATION,
+    VERSION,
+    as_columns,
+    display_color,
+    has,
+    linear_to_srgb,
+    matrix,
+    numbers_of,
+    origin_for,
+)
+from .placement import joined, parts_of, world_positions
 from .ply_file import read_vertices, vertex_count, vertex_portions, write_vertices
 
-_VERSION, _ORIGIN, _SOLID = "surfel_splatting 1", "origin", "solid"
+_ORIGIN, _SOLID = "origin", "solid"
 _SCALE = ("scale_0", "scale_1")
 _COLOR = ("color_0", "color_1", "color_2", "color_3")
 _DISPLAY_COLOR = ("red", "green", "blue", "alpha")
@@ -64,10 +77,12 @@ class StoredSurfels:
         return [*[skipped] * bool(self.unusable), *self.said]
 
 
-def write_ply(path: str | os.PathLike, surfels: Surfels, ascii: bool = False) -> None:
-    """Write all fields of `surfels` in the layout above. Raises OSError if the file cannot be written."""
-    has_origin = bool(surfels.origin.any())
-    positions = surfels.positions + surfels.origin if has_origin else surfels.positions
+def write_ply(path: str | os.PathLike, surfels: Surfels | Sequence[Surfels], ascii: bool = False) -> list[str]:
+    """Write all fields of `surfels`, one set or several, in the layout above. Returns sentences about what was lost,
+    which is nothing. Raises OSError if the file cannot be written."""
+    parts = parts_of(surfels)
+    surfels, has_origin = joined(parts), any(part.origin.any() for part in parts)
+    positions = world_positions(parts) if has_origin else surfels.positions
     shown = np.clip(surfels.colors.astype(np.float64), 0, 1)
     shown[:, :3] = linear_to_srgb(shown[:, :3])
     columns = {
@@ -85,8 +100,9 @@ def write_ply(path: str | os.PathLike, surfels: Surfels, ascii: bool = False) ->
         if values is not None:
             columns |= as_columns(properties, values.reshape(len(surfels), len(properties)))
     origin = " ".join(repr(float(value)) for value in surfels.origin)
-    comments = [_VERSION, *([f"{_ORIGIN} {origin}"] * has_origin), *([_SOLID] * surfels.is_solid)]
+    comments = [VERSION, *([f"{_ORIGIN} {origin}"] * has_origin), *([_SOLID] * surfels.is_solid)]
     write_vertices(path, columns, tuple(comments), ascii)
+    return []
 
 
 def read_ply(path: str | os.PathLike) -> Surfels:
@@ -151,8 +167,9 @@ def stored_surfels(columns: dict[str, np.ndarray], comments: tuple[str, ...], fl
 
 def _fields(columns: dict[str, np.ndarray], comments: tuple[str, ...], floats: str = "DISPLAY") -> tuple[dict, list]:
     """The arguments of `valid_surfels`, and what was assumed."""
-    origin = _origin(comments)
-    positions = matrix(columns, POSITION, np.float64)
+    origin, positions = numbers_of(comments, _ORIGIN), matrix(columns, POSITION, np.float64)
+    if origin is None:
+        origin = origin_for(positions[np.isfinite(positions).all(axis=1)])
     # Infinite values stay infinite or become NaN, and are counted as unusable.
     with np.errstate(over="ignore", invalid="ignore"):
         positions = (positions - origin).astype(np.float32)
@@ -174,17 +191,3 @@ def _fields(columns: dict[str, np.ndarray], comments: tuple[str, ...], floats: s
         **{name: values if len(_OPTIONAL[name]) > 1 else values[:, 0] for name, values in optional.items()},
     }
     return fields, said
-
-
-def _origin(comments: tuple[str, ...]) -> np.ndarray:
-    for comment in comments:
-        word, *values = comment.split()[:5] or [""]
-        if word == _ORIGIN and _VERSION in comments:
-            try:
-                origin = np.array([float(value) for value in values])
-            except ValueError:
-                origin = np.empty(0)
-            if origin.shape != (3,) or not np.isfinite(origin).all():
-                raise ValueError(f"The PLY file's comment {comment[:80]!r} must hold 3 finite numbers; correct it.")
-            return origin
-    return np.zeros(3)

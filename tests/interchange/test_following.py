@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """If only the centres were moved, the ellipses are turned and stretched as if they had been moved too."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -94,3 +96,10 @@ def test_a_rest_that_is_not_finite_costs_nothing(surfels):
     stored = surfels(10)
     rest = np.full((10, 3), np.nan)
     assert followed(stored, rest)[1] == 0
+
+
+def test_the_origin_turns_with_the_centres(surfels):
+    """It lies beside the stored centres, so that Blender does not turn it."""
+    stored = replace(surfels(100), origin=(0.25, -0.1, 0))
+    made, strayed = followed(replace(torn(surfels(100), TURNED), origin=stored.origin), stored.positions)
+    assert strayed == 0 and np.allclose(made.positions + made.origin, moved(stored, TURNED).positions, atol=1e-5)

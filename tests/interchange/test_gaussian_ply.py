@@ -175,3 +175,39 @@ def test_view_dependent_colour_is_reported(gaussian_file):
 def test_a_flatness_outside_its_range_is_an_error(gaussian_file):
     with pytest.raises(ValueError, match="flatness must be a number from 0 to 1, not 2"):
         read_contents(gaussian_file([{}]), 2)
+
+
+def places(surfels):
+    return surfels.positions.astype(float) + surfels.origin
+
+
+def test_survey_coordinates_are_written_relative_to_an_offset_that_the_file_names(surfels, tmp_path):
+    parts = [surfels(50, origin=(403123.2656, 5604987.27, 112)), surfels(50, origin=(403223.5, 5604987.27, 112))]
+    [said] = write_gaussian_ply(tmp_path / "g.ply", parts)
+    data = plyfile.PlyData.read(tmp_path / "g.ply")
+    version, offset = data.comments
+    assert version == "surfel_splatting 1" and all(float(value).is_integer() for value in offset.split()[1:])
+    assert offset.startswith("offset 403174.0 5604987.0") and "relative to 403174 5604987" in said
+    assert all(np.abs(data["vertex"][n]).max() < 60 for n in "xyz")
+    read, exact = read_contents(tmp_path / "g.ply"), np.concatenate([places(part) for part in parts])
+    assert np.abs(places(read.surfels) - exact).max() < 1e-5 and not read.said
+
+
+def test_what_float32_holds_is_written_where_it_is(surfels, tmp_path):
+    assert write_gaussian_ply(tmp_path / "g.ply", surfels(50, origin=(100.1, 0, 0))) == []
+    data = plyfile.PlyData.read(tmp_path / "g.ply")
+    assert not data.comments and np.allclose(data["vertex"]["x"], 100.1 + surfels(50).positions[:, 0], rtol=1e-6)
+
+
+def test_sets_too_far_apart_for_one_offset_are_told(surfels, tmp_path):
+    said = write_gaussian_ply(tmp_path / "g.ply", [surfels(50), surfels(50, origin=(1e9, 0, 0))])
+    assert "Rounded positions by up to" in said[1]
+
+
+def test_coordinates_that_were_rounded_before_they_came_into_the_file_are_doubted(gaussian_file):
+    rows = [WHOLE | {"y": 5604987.5 + step} for step in (0, 0.5, 1)]
+    assert any(
+        "go in steps of 0.5, because it holds coordinates up to 5,6" in s
+        for s in read_contents(gaussian_file(rows)).said
+    )
+    assert not read_contents(gaussian_file([WHOLE, WHOLE | {"y": 3}])).said

@@ -119,3 +119,22 @@ def test_a_file_is_not_replaced_by_half_of_another(surfels, assert_same_bits, tm
         write_ply(tmp_path / "a.ply", empty_surfels(), ascii=True)
     assert_same_bits(read_ply(tmp_path / "a.ply"), written)
     assert [file.name for file in tmp_path.iterdir()] == ["a.ply"]
+
+
+def test_several_sets_keep_their_places_exactly(surfels, tmp_path):
+    parts = [surfels(20, origin=(403123.2656, 5604987.27, 0)), surfels(20), surfels(20, origin=(0, 1e-3, -7e6 / 3))]
+    assert write_ply(tmp_path / "a.ply", parts) == []
+    vertex = plyfile.PlyData.read(tmp_path / "a.ply")["vertex"]
+    exact = np.concatenate([part.positions.astype(float) + part.origin for part in parts])
+    assert np.array_equal(np.stack([vertex[n] for n in "xyz"], axis=1), exact)
+
+
+def test_doubles_of_a_writer_that_names_no_origin_keep_their_digits(surfels, tmp_path):
+    written = surfels(20, origin=(403123.2656, 5604987.27, 0))
+    write_ply(tmp_path / "a.ply", written)
+    data = plyfile.PlyData.read(tmp_path / "a.ply")
+    data.comments = []
+    data.write(tmp_path / "b.ply")
+    read = read_contents(tmp_path / "b.ply").surfels
+    assert np.abs(read.positions + read.origin - (written.positions + written.origin)).max() < 1e-6
+    assert np.array_equal(read.origin, read.origin.astype(np.float32))

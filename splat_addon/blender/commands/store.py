@@ -10,6 +10,7 @@ from pathlib import Path
 import bpy
 
 from ...claims import claimed
+from ...doubts import doubts_of_rounding
 from ...interchange import PlyPortions
 from ...streaming import PORTION, described, write_blocks
 from ...streaming.layout import SUFFIX
@@ -72,6 +73,8 @@ def _of_objects(options: argparse.Namespace) -> Sequence[Surfels]:
     surfels, skipped = world_surfels(owners, bpy.context.evaluated_depsgraph_get())
     if skipped:
         print(f"{skipped:,} unusable surfels skipped", flush=True)
+    for note in doubts_of_rounding(surfels):
+        print(note, flush=True)
     return [part for each in surfels for part in portions(each, PORTION)]
 
 

@@ -12,13 +12,13 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 
 import bpy
-from mathutils import Matrix, Vector
+import numpy as np
 
 from ...doubts import doubts
 from ...sampling import Sampling, SamplingCancelled, sample_surface
 from ..faults import sentence_of
 from .as_rendered import as_rendered
-from .following import at_origin_of_source
+from .following import at_origin_of_source, with_short_origin
 from .gathering import groups
 from .mesh_conversion import Choices, Conversion, bake, place, prepare, sample
 from .source_record import record_of
@@ -99,16 +99,14 @@ class Batch(ABC):
         for conversion in self._sampled:
             start, record = time.perf_counter(), record_of(made)
             self._finish(conversion, context)
-            refill(made, conversion.surfels, conversion.materials)
-            shift = Vector(conversion.surfels.origin) - Vector(record.origin)
-            made.matrix_basis = made.matrix_basis @ Matrix.Translation(shift)
+            refill(made, conversion.surfels, np.array(record.origin, np.float64), conversion.materials)
             record.origin = conversion.surfels.origin
             conversion.seconds += time.perf_counter() - start
         return self._sampled
 
     def _finish(self, conversion, context: bpy.types.Context) -> None:
         """Finish the surfels; may access Blender."""
-        conversion.surfels = at_origin_of_source(conversion.surfels)
+        conversion.surfels = with_short_origin(at_origin_of_source(conversion.surfels))
 
     @abstractmethod
     def _prepare(self, sources: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph):

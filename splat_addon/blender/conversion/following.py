@@ -38,6 +38,14 @@ def at_origin_of_source(surfels: Surfels) -> Surfels:
     return replace(surfels, origin=np.zeros(3), positions=(surfels.positions + surfels.origin).astype(np.float32))
 
 
+def with_short_origin(surfels: Surfels) -> Surfels:
+    """The surfels with an origin that float32 holds, as the record of a conversion does."""
+    short = surfels.origin.astype(np.float32).astype(np.float64)
+    if np.array_equal(short, surfels.origin):
+        return surfels
+    return replace(surfels, origin=short, positions=surfels.positions + (surfels.origin - short))
+
+
 def follow(made: bpy.types.Object, source: bpy.types.Object, matrix_world: Matrix, unit: float) -> None:
     """Make a surfel object follow its source, without moving it.
 

@@ -22,6 +22,24 @@ def finite_matrix(matrix_world: Matrix) -> np.ndarray:
     return matrix
 
 
+def placed(matrix: Matrix, origin: np.ndarray) -> tuple[Matrix, np.ndarray]:
+    """A matrix whose location is that of `origin` under `matrix`, and the (3,) float64 offset that float32 loses, in
+    the same space as `origin`.
+
+    Both together are exact: matrix @ (p + origin) = placed matrix @ (p + offset). Raises ValueError for a place that
+    Blender cannot hold.
+    """
+    whole = np.array(matrix, np.float64)
+    linear, target = whole[:3, :3], whole[:3, :3] @ origin + whole[:3, 3]
+    with np.errstate(over="ignore"):
+        location = target.astype(np.float32)
+    if not np.isfinite(location).all():
+        raise ValueError(f"Blender has no place as far away as {' '.join(f'{each:g}' for each in target)}.")
+    made, lost = matrix.copy(), target - location
+    made.translation = location.tolist()
+    return made, np.linalg.pinv(linear) @ lost
+
+
 def without_shear(matrix_world: Matrix) -> tuple[Matrix, np.ndarray | None]:
     """The nearest matrix without shear, and the (3, 3) float64 remainder, None if there is none.
 

@@ -6,12 +6,14 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import bpy
+import numpy as np
 from mathutils import Matrix
 
 from ...surfels import Surfels
-from ..geometry.attributes import fill, write_surfels
+from ..geometry.attributes import fill, offset_of, write_surfels
 from ..geometry.points_proxy import show_as_points
 from ..ids import MESH_SETTINGS
+from .placement import placed
 
 
 def add_surfel_object(
@@ -21,11 +23,13 @@ def add_surfel_object(
     collections: Iterable[bpy.types.Collection],
     materials: Iterable[bpy.types.Material | None] = (),
 ) -> bpy.types.Object:
-    """Add a new object to `collections`; matrix_world: the space in which `surfels.origin` is given."""
-    mesh = write_surfels(name, surfels)
+    """Add a new object to `collections`; matrix_world: the space in which `surfels.origin` is given. Raises ValueError
+    as `placed`."""
+    place, offset = placed(matrix_world, surfels.origin)
+    mesh = write_surfels(name, surfels, offset)
     for material in materials:
         mesh.materials.append(material)
-    return add_object_of(mesh, matrix_world @ Matrix.Translation(surfels.origin), collections)
+    return add_object_of(mesh, place, collections)
 
 
 def add_object_of(
@@ -40,9 +44,13 @@ def add_object_of(
     return made
 
 
-def refill(made: bpy.types.Object, surfels: Surfels, materials: Iterable[bpy.types.Material | None]) -> None:
-    """Replace the surfels of an object, and of all objects that share its mesh."""
-    fill(made.data, surfels)
+def refill(
+    made: bpy.types.Object, surfels: Surfels, origin: np.ndarray, materials: Iterable[bpy.types.Material | None]
+) -> None:
+    """Replace the surfels of an object, and of all objects that share its mesh. origin: where the old ones had their
+    origin, in the space of the new one's."""
+    made.matrix_basis, offset = placed(made.matrix_basis, offset_of(made.data) + (surfels.origin - origin))
+    fill(made.data, surfels, offset)
     getattr(made.data, MESH_SETTINGS).file = ""
     made.data.materials.clear()
     for material in materials:

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import bpy
 import numpy as np
-from mathutils import Matrix
 
 from ..geometry.mesh_extraction import is_unread
 from ..ids import OBJECT_SETTINGS
@@ -15,6 +14,7 @@ from .bring_back import hide_source, is_disabled_in_renders
 from .changed_sources import remember_shapes
 from .following import follow, follow_visibility
 from .object_info import sentences_about
+from .placement import placed
 from .shape_following import follow_shape, is_bent
 from .source_record import keep_record, record_of
 
@@ -32,7 +32,7 @@ def tie(conversion, made: bpy.types.Object, kind: str, settings, follows: bool, 
     keep_record(made, conversion.sources, kind, settings)
     keep_unread(made, conversion)
     if follows:
-        matrix_world = conversion.matrix_world @ Matrix.Translation(conversion.surfels.origin)
+        matrix_world, _ = placed(conversion.matrix_world, conversion.surfels.origin)
         unit = float(np.median(conversion.surfels.scales)) * min(map(abs, matrix_world.to_scale()))
         follow(made, conversion.sources[0], matrix_world, unit)
         notes = [*follow_visibility(made, conversion.sources), *tie_shape(conversion, made, kind)]

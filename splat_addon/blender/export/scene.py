@@ -27,6 +27,7 @@ from ..geometry.attributes import (
     has_surfels,
     has_surfels_beside_faces,
     have_same_values,
+    offset_of,
     read_stored,
     since_written,
 )
@@ -108,14 +109,16 @@ class SurfelStore:
         self._current: set[int] = set()
         self._followed: dict = {}
 
-    def get(self, points: Points, key: int, name: str, is_solid: bool = False) -> tuple[Surfels | None, int, int]:
+    def get(
+        self, points: Points, key: int, name: str, offset: np.ndarray, is_solid: bool = False
+    ) -> tuple[Surfels | None, int, int]:
         """The result of `attributes.read_stored`; read once per mesh and frame. There may be no surfels yet.
 
         key: session_uid of the mesh or point cloud, or of the mesh that the points were made beside.
-        name: identifies it in the next evaluation.
+        name: identifies it in the next evaluation. offset: of the mesh in the .blend.
         """
         if key not in self._current:
-            surfels, skipped, strayed = read_stored(points, self._followed, name, is_solid)
+            surfels, skipped, strayed = read_stored(points, self._followed, name, is_solid, offset)
             before = [kept for kept in self._kept.values() if kept.name == name]
             kept = next((k for k in before if have_same_values(k.surfels, surfels)), None)
             kept = kept or Kept(name, surfels, 0, 0)
@@ -241,14 +244,15 @@ class _Things:
 
     def _kept(self, entry: bpy.types.DepsgraphObjectInstance, kind: str) -> tuple[Surfels | None, int, int]:
         """What the store has of an entry's surfels, or of those that are shown as points."""
-        object_ = entry.object
+        object_, owner = entry.object, entry.object.original
+        offset = offset_of(owner.data)
         if kind == "shown":
-            owner = object_.original
             with shown_points(entry.instance_object or object_) as points:
-                return self._store.get(points, object_.data.session_uid, owner.name_full, is_solid(owner))
+                return self._store.get(points, object_.data.session_uid, owner.name_full, offset, is_solid(owner))
         with _attributes_of(object_) as points:
             # an evaluated point cloud that no modifier made has no session_uid of its own
-            return self._store.get(points, points.session_uid or points.original.session_uid, points.name_full)
+            key = points.session_uid or points.original.session_uid
+            return self._store.get(points, key, points.name_full, offset)
 
 
 def _world_of(depsgraph: bpy.types.Depsgraph) -> bpy.types.World | None:
@@ -392,13 +396,14 @@ def _stream_of(owner: bpy.types.Object, store: SurfelStore, notes: Notes) -> Str
 def _streamed(
     object_, stream: Stream, depsgraph, matrix_world: np.ndarray, fields: dict, store: SurfelStore, notes, override
 ) -> list[Instance]:
-    """The instance of an object whose surfels are in a file. Its points are relative to the file's origin."""
+    """The instance of an object whose surfels are in a file. Its points are relative to the file's origin, of which the
+    mesh's offset is what the object's location lacks."""
     if sentence := not_followed(object_.original):
         notes.add(sentence)
     if override is not None:
         notes.add(f"{object_.name} keeps its own colours under the overriding material, as they come from a file")
     to_origin = np.eye(4)
-    to_origin[:3, 3] = -stream.file.origin
+    to_origin[:3, 3] = offset_of(object_.original.data) - stream.file.origin
     kept = stream.coarsest, 0, 0
     made = _instances(object_, kept, depsgraph, matrix_world @ to_origin, fields, store, notes, None)
     if len(made) > 1:

@@ -89,7 +89,7 @@ class SlicedStore(SurfelStore):
         super().forget_unused()
         self._kept |= before
 
-    def get(self, points: Points, key: int, name: str, is_solid: bool = False):
+    def get(self, points: Points, key: int, name: str, offset: np.ndarray, is_solid: bool = False):
         """The result of `SurfelStore.get`, or what is known meanwhile, which may be nothing."""
         self._requested.add(key)
         count = count_of(points)
@@ -97,10 +97,11 @@ class SlicedStore(SurfelStore):
         if key in self._current or is_at_once:
             self._at_once -= 0 if key in self._current else count
             self._readings.pop(key, None)
-            return super().get(points, key, name, is_solid)
+            return super().get(points, key, name, offset, is_solid)
         reading, before = self._readings.get(key), [kept for kept in self._kept.values() if kept.name == name]
         if reading is None or reading.count != count:
-            reading = self._readings[key] = _Reading(points, name, is_solid, before, self._followed.get(name))
+            known = self._followed.get(name)
+            reading = self._readings[key] = _Reading(points, name, offset, is_solid, before, known)
         try:
             read = reading.advance(points, self._until, self._clock)
         except Exception:
@@ -114,7 +115,7 @@ class SlicedStore(SurfelStore):
         tell_replaced(before, read.kept)
         self._kept[key] = read.kept
         self._current.add(key)
-        return super().get(points, key, name, is_solid)
+        return super().get(points, key, name, offset, is_solid)
 
 
 class _Read(NamedTuple):
@@ -125,9 +126,17 @@ class _Read(NamedTuple):
 class _Reading:
     """One mesh that is being read. before: what is kept of meshes of its name. meanwhile: the set to show."""
 
-    def __init__(self, points: Points, name: str, is_solid: bool, before: list[Kept], followed: tuple | None):
+    def __init__(
+        self,
+        points: Points,
+        name: str,
+        offset: np.ndarray,
+        is_solid: bool,
+        before: list[Kept],
+        followed: tuple | None,
+    ):
         self.name, self.count, self._before, self._followed = name, count_of(points), before, followed
-        self._is_solid = is_solid or bool(points.get(SOLID))
+        self._origin, self._is_solid = offset, is_solid or bool(points.get(SOLID))
         self._fields = stored_fields(points, name)
         self._rooms: dict[str, Future] = {}
         self._arrays: dict[str, np.ndarray] = {}
@@ -169,11 +178,13 @@ class _Reading:
             if not self._before:
                 rows = spread(self.count, STAND_IN)
                 more = {field: values[rows] for field, values in self._arrays.items()}
-                self.meanwhile = _few(more, self.count, self._is_solid)
+                self.meanwhile = _few(more, self.count, self._origin, self._is_solid)
             # copies, because an object that the thread frees would free its textures there
             known = {} if self._followed is None else {self.name: _copied(self._followed)}
             before = [copy(kept.surfels) for kept in self._before]
-            self._made = in_background(partial(_made, self._arrays, self._is_solid, known, self.name, before))
+            self._made = in_background(
+                partial(_made, self._arrays, self._origin, self._is_solid, known, self.name, before)
+            )
         if not self._made.done():
             return None
         stored, same, followed = self._made.result()
@@ -184,7 +195,7 @@ class _Reading:
         """The set to show before the attributes have been read."""
         rows, seen = spread(self.count, FIRST), self._fields.keys() - {REST_FIELD, *LEFT_OUT}
         arrays = {field: read_rows(points, self._fields[field], self.name, rows) for field in seen}
-        return _few(arrays, self.count, self._is_solid)
+        return _few(arrays, self.count, self._origin, self._is_solid)
 
 
 def _room(layout, count: int) -> np.ndarray:
@@ -194,12 +205,12 @@ def _room(layout, count: int) -> np.ndarray:
     return values
 
 
-def _few(arrays: dict[str, np.ndarray], count: int, is_solid: bool) -> Surfels | None:
+def _few(arrays: dict[str, np.ndarray], count: int, origin: np.ndarray, is_solid: bool) -> Surfels | None:
     """The stand-in of `count` surfels, made of some that have not been checked, if any of them are usable."""
     known = {field: values for field, values in arrays.items() if field != REST_FIELD}
-    surfels, _, _ = stored_of(known, is_solid, {}, "")
+    surfels, _, _ = stored_of(known, is_solid, {}, "", origin)
     wide = widened(surfels.arrays(), count / max(len(surfels), 1))
-    return standing_in(valid_surfels(is_solid=is_solid, **wide)[0]) if len(surfels) else None
+    return standing_in(valid_surfels(origin, is_solid, **wide)[0]) if len(surfels) else None
 
 
 def _copied(followed: tuple) -> tuple:
@@ -207,10 +218,10 @@ def _copied(followed: tuple) -> tuple:
     return copy(read), rest, stored._replace(surfels=copy(stored.surfels))
 
 
-def _made(arrays, is_solid: bool, known: dict, name: str, before: list[Surfels]):
+def _made(arrays, origin: np.ndarray, is_solid: bool, known: dict, name: str, before: list[Surfels]):
     """The job: what is stored, the number of the set before that has the same values, and what `known` has of it
     now."""
-    stored: Stored = stored_of(arrays, is_solid, known, name)
+    stored: Stored = stored_of(arrays, is_solid, known, name, origin)
     same = next((n for n, surfels in enumerate(before) if have_same_values(surfels, stored.surfels)), None)
     if same is None:
         prepared((stored.surfels,))

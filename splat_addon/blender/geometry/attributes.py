@@ -19,7 +19,7 @@ import numpy as np
 from ...interchange import followed
 from ...surfels import LAYOUT, OPTIONAL_LAYOUT, Surfels, valid_surfels
 from .. import working_space
-from ..ids import POINT_ATTRIBUTES, PRIMARIES, REST, SOLID, PointAttribute
+from ..ids import OFFSET, POINT_ATTRIBUTES, PRIMARIES, REST, SOLID, PointAttribute
 from .gaussian_clouds import is_gaussian_cloud
 from .reading import read_values
 
@@ -56,15 +56,16 @@ def has_surfels_beside_faces(mesh: bpy.types.Mesh) -> bool:
     return bool(mesh.polygons) and REST.name in mesh.attributes
 
 
-def write_surfels(name: str, surfels: Surfels) -> bpy.types.Mesh:
-    """A new vertex-only mesh that stores `surfels`; `surfels.origin` must become the object's location."""
+def write_surfels(name: str, surfels: Surfels, offset: np.ndarray | None = None) -> bpy.types.Mesh:
+    """A new vertex-only mesh that stores `surfels`. `surfels.origin` must become the object's location; offset: what
+    was added to it in exchange, by default what float32 loses."""
     mesh = bpy.data.meshes.new(name)
-    fill(mesh, surfels)
+    fill(mesh, surfels, surfels.origin - surfels.origin.astype(np.float32) if offset is None else offset)
     return mesh
 
 
-def fill(mesh: bpy.types.Mesh, surfels: Surfels) -> None:
-    """Replace the contents of a mesh by surfels."""
+def fill(mesh: bpy.types.Mesh, surfels: Surfels, offset: np.ndarray) -> None:
+    """Replace the contents of a mesh by surfels. offset: (3,) float64, to be added to their positions."""
     mesh.clear_geometry()
     mesh.vertices.add(len(surfels))
     for field, layout in POINT_ATTRIBUTES.items():
@@ -78,15 +79,37 @@ def fill(mesh: bpy.types.Mesh, surfels: Surfels) -> None:
     else:
         mesh.pop(SOLID, None)
     mesh[PRIMARIES] = working_space.to_xyz().ravel().tolist()
+    set_offset(mesh, offset)
     mesh.update()
+
+
+def set_offset(mesh: bpy.types.Mesh, offset: np.ndarray) -> None:
+    """Store what is added to the positions of a surfel mesh, (3,) float64."""
+    if np.any(offset):
+        mesh[OFFSET] = np.asarray(offset, np.float64).tolist()
+    else:
+        mesh.pop(OFFSET, None)
+
+
+def offset_of(mesh: bpy.types.ID) -> np.ndarray:
+    """What is added to the positions of a surfel mesh of the .blend, (3,) float64. What modifiers make of the mesh has
+    no such property, but the same offset."""
+    return _numbers(mesh, OFFSET, 3, np.zeros(3))
+
+
+def _numbers(mesh: bpy.types.ID, name: str, count: int, otherwise: np.ndarray) -> np.ndarray:
+    """(count,) float64 of a custom property, if it holds so many finite numbers."""
+    values = np.ravel(mesh.get(name, ()))
+    is_known = values.shape == (count,) and np.issubdtype(values.dtype, np.number) and np.isfinite(values).all()
+    return values.astype(np.float64) if is_known else otherwise
 
 
 def since_written(mesh: Points) -> np.ndarray:
     """(3, 3) conversion of a surfel mesh's colours from the working space in which they were written to the file's; the
     identity if it is the same, or unknown."""
-    then, now = np.ravel(mesh.get(PRIMARIES, ())), working_space.to_xyz()
-    is_known = then.shape == (9,) and np.issubdtype(then.dtype, np.number) and np.isfinite(then).all()
-    if not is_known or np.allclose(then, now.ravel(), rtol=0, atol=_SAME_SPACE):
+    now = working_space.to_xyz()
+    then = _numbers(mesh, PRIMARIES, 9, now.ravel())
+    if np.allclose(then, now.ravel(), rtol=0, atol=_SAME_SPACE):
         return np.eye(3)
     return np.linalg.solve(now, then.reshape(3, 3))
 
@@ -97,9 +120,9 @@ def _write(mesh: bpy.types.Mesh, layout: PointAttribute, values: np.ndarray) -> 
     attribute.data.foreach_set(layout.property, _padded(values, layout.columns))
 
 
-def read_surfels(mesh: Points) -> tuple[Surfels, int]:
+def read_surfels(mesh: Points, offset: np.ndarray | None = None) -> tuple[Surfels, int]:
     """The surfels stored in `mesh`, and the number of unusable points left out, see `read_stored`."""
-    return read_stored(mesh)[:2]
+    return read_stored(mesh, offset=offset)[:2]
 
 
 class Stored(NamedTuple):
@@ -117,13 +140,16 @@ def read_stored(
     known: dict[str, tuple[Surfels, np.ndarray, Stored]] | None = None,
     name: str = "",
     is_solid: bool = False,
+    offset: np.ndarray | None = None,
 ) -> Stored:
-    """The surfels stored in `mesh`, with origin (0, 0, 0); in a mesh with faces, the points that belong to no face.
+    """The surfels stored in `mesh`, with its offset as their origin; in a mesh with faces, the points that belong to no
+    face.
 
     If centres have moved together since they were written, their frames are moved too (`interchange.followed`). This
     takes seconds per million surfels, so known caches the result by name (by default the mesh's) for as long as the
     values stay the same.
-    is_solid: True if the mesh does not say so itself, but its source does.
+    is_solid: True if the mesh does not say so itself, but its source does. offset: that of the mesh in the .blend, if
+    modifiers made this one.
 
     Attributes are found by name; optional ones may be missing. Raises ValueError if a required one is missing or has
     the wrong type, and for a mesh in edit mode, whose attributes do not contain the points (`Object.to_mesh()` does).
@@ -133,7 +159,8 @@ def read_stored(
     arrays = {field: read_field(mesh, layout, name) for field, layout in stored_fields(mesh, name).items()}
     loose = _loose_points(mesh)
     arrays = arrays if loose is None else {name: values[loose] for name, values in arrays.items()}
-    return stored_of(arrays, is_solid or bool(mesh.get(SOLID)), {} if known is None else known, name)
+    origin = offset_of(mesh) if offset is None else offset
+    return stored_of(arrays, is_solid or bool(mesh.get(SOLID)), {} if known is None else known, name, origin)
 
 
 #: The name in `stored_fields` of the centres as they were written.
@@ -180,13 +207,13 @@ def room_for(layout: PointAttribute, count: int) -> np.ndarray:
     return np.empty(shape, _TYPES.get(layout.data_type, np.float32))
 
 
-def stored_of(arrays: dict[str, np.ndarray], is_solid: bool, known: dict, name: str) -> Stored:
+def stored_of(arrays: dict[str, np.ndarray], is_solid: bool, known: dict, name: str, origin: np.ndarray) -> Stored:
     """The surfels of arrays that were read by `stored_fields`; no Blender data is touched. known, name: as in
-    `read_stored`."""
+    `read_stored`. origin: of the surfels."""
     arrays = dict(arrays)
     rest = arrays.pop(REST_FIELD, None)
     arrays["scales"] = arrays["scales"][:, :2]
-    surfels, skipped = valid_surfels(is_solid=is_solid, **arrays)
+    surfels, skipped = valid_surfels(origin, is_solid, **arrays)
     if rest is None:
         return Stored(surfels, skipped, 0)
     if skipped:
@@ -225,8 +252,8 @@ def _loose_points(mesh: Points) -> np.ndarray | None:
 def have_same_values(a: Surfels, b: Surfels) -> bool:
     """Whether two sets of surfels have the same fields with the same values."""
     mine, other = a.arrays(), b.arrays()
-    same_fields = a.is_solid == b.is_solid and mine.keys() == other.keys()
-    return same_fields and all(np.array_equal(mine[name], other[name]) for name in mine)
+    is_alike = a.is_solid == b.is_solid and mine.keys() == other.keys() and np.array_equal(a.origin, b.origin)
+    return is_alike and all(np.array_equal(mine[name], other[name]) for name in mine)
 
 
 def _padded(values: np.ndarray, columns: int) -> np.ndarray:

@@ -51,14 +51,14 @@ def is_others(mesh: bpy.types.Mesh, file_id: str) -> bool:
 
 def keep_coarsest(mesh: bpy.types.Mesh, path: str, relative: str, is_own: bool) -> tuple[int, np.ndarray]:
     """Fill the mesh with the coarsest surfels of a file, and name the file in it; returns how many the file holds, and
-    their (3,) origin, which becomes the object's location.
+    their (3,) origin, which is the mesh's offset until the object's location takes it over.
 
     path: absolute. relative: the path to name. is_own: the file was written for this mesh. Raises OSError or ValueError
     if the file cannot be used.
     """
     stream = Stream(path, 0)
     try:
-        fill(mesh, surfels_from_rec709(stream.at_most(KEPT)))
+        fill(mesh, surfels_from_rec709(stream.at_most(KEPT)), stream.file.origin)
         settings = getattr(mesh, MESH_SETTINGS)
         settings.file = relative
         settings.file_id, settings.file_blend = (stream.file.id, _blend_name()) if is_own else ("", "")

@@ -13,7 +13,7 @@ from ...interchange import transformed
 from ...primaries import recolored
 from ...surfels import Surfels
 from ..working_space import surfels_to_rec709
-from .attributes import has_surfels, read_surfels, since_written
+from .attributes import has_surfels, offset_of, read_surfels, since_written
 from .points_proxy import points_of
 
 
@@ -25,7 +25,7 @@ def world_surfels(candidates: Iterable[bpy.types.Object], depsgraph: bpy.types.D
         evaluated = candidate.evaluated_get(depsgraph)
         with points_of(evaluated) as holders:
             for points in filter(has_surfels, holders):
-                surfels, skipped = read_surfels(points)
+                surfels, skipped = read_surfels(points, offset_of(candidate.data))
                 surfels = replace(as_in_files(surfels, candidate), materials=surfels.materials + np.int32(slots))
                 parts.append(transformed(surfels, np.array(evaluated.matrix_world, np.float64)))
                 unusable += skipped

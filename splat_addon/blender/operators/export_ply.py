@@ -7,7 +7,7 @@ import bpy
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper
 
-from ...interchange import joined, write_gaussian_ply, write_ply
+from ...interchange import write_gaussian_ply, write_ply
 from ..geometry.attributes import has_surfels
 from ..geometry.surfel_files import file_of
 from ..geometry.world_surfels import world_surfels
@@ -16,10 +16,10 @@ from ..spoken import said
 from .file_paths import absolute, file_sentence, path_property
 from .menu_entry import with_menu_entry
 
-#: The operator's choice -> function that writes surfels to a path, optionally as text.
+#: The operator's choice -> function that writes sets of surfels to a path, optionally as text, and returns what to say.
 _WRITERS = {
     "SURFELS": write_ply,
-    "GAUSSIANS": lambda path, surfels, ascii: write_gaussian_ply(path, surfels),
+    "GAUSSIANS": lambda path, parts, ascii: write_gaussian_ply(path, parts),
 }
 
 
@@ -79,8 +79,8 @@ class EXPORT_SCENE_OT_surfels_ply(ExportHelper, bpy.types.Operator):
                     if self.use_selection
                     else said("No visible object is surfels; convert one first, or choose others")
                 )
-            surfels, path = joined(parts), absolute(self.filepath)
-            _WRITERS[self.layout_kind](path, surfels, self.ascii)
+            path = absolute(self.filepath)
+            notes = _WRITERS[self.layout_kind](path, parts, self.ascii)
         except OSError as error:
             why = file_sentence(error)
             self.report({"ERROR"}, said("{path} cannot be written: {why}", path=self.filepath, why=why))
@@ -96,7 +96,9 @@ class EXPORT_SCENE_OT_surfels_ply(ExportHelper, bpy.types.Operator):
                 names=", ".join(coarse),
             )
             self.report({"WARNING"}, why)
-        values = {"count": len(surfels), "objects": len(parts), "path": path}
+        for note in notes:
+            self.report({"WARNING"}, note)
+        values = {"count": sum(map(len, parts)), "objects": len(parts), "path": path}
         self.report({"INFO"}, said("{count:,} surfels of {objects} objects -> {path}", **values))
         return {"FINISHED"}
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import bpy
+import numpy as np
 from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper, poll_file_object_drop
 from mathutils import Matrix
@@ -16,6 +17,7 @@ from ...sampling import surfels_from_points
 from ...streaming import id_of
 from ...streaming.layout import SUFFIX
 from ...surfels import Surfels
+from ..conversion.placement import placed
 from ..conversion.points_settings import (
     PointsProperties,
     draw_gaussian_properties,
@@ -25,6 +27,7 @@ from ..conversion.points_settings import (
     viewpoint,
 )
 from ..conversion.surfel_objects import active_collection, add_object_of, add_surfel_object, select_only
+from ..geometry.attributes import offset_of, read_surfels, set_offset
 from ..geometry.surfel_files import keep_coarsest, relative_path
 from ..ids import IMPORT_PLY
 from ..spoken import said
@@ -32,6 +35,9 @@ from ..working_space import surfels_from_rec709
 from .file_paths import absolute, file_sentence, path_property
 from .menu_entry import with_menu_entry
 from .modal_writing import ModalWriting, Writing
+
+#: Steps of Blender's numbers that are coarse, in half-axes of the median surfel.
+_COARSE = 0.1
 
 
 class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ModalWriting, ImportHelper, bpy.types.Operator):
@@ -105,13 +111,14 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ModalWriting, ImportHelper, 
             if not len(surfels):
                 raise ValueError(f"The file gives no surfels{': ' if notes else ''}{'; '.join(notes)}.")
             notes += doubts(surfels)
+            made = add_surfel_object(Path(self._name).stem, surfels, Matrix(), [active_collection(context)])
         except Exception as error:
             return self._fail(error)
-        made = add_surfel_object(Path(self._name).stem, surfels, Matrix(), [active_collection(context)])
         select_only(context, [made])
         self.report({"INFO"}, said("{name}: {count:,} surfels", name=self._name, count=len(surfels)))
         for note in notes:
             self.report({"INFO" if is_mild(note) else "WARNING"}, note)
+        self._tell_place(made, surfels)
         return {"FINISHED"}
 
     def _begin(self, context):
@@ -131,12 +138,27 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ModalWriting, ImportHelper, 
         mesh = bpy.data.meshes.new(Path(self._name).stem)
         try:
             count, origin = keep_coarsest(mesh, path, relative_path(path), is_own)
+            place, offset = placed(Matrix(), origin)
         except BaseException:
             bpy.data.meshes.remove(mesh)
             raise
-        made = add_object_of(mesh, Matrix.Translation(origin), [active_collection(context)])
+        set_offset(mesh, offset)
+        made = add_object_of(mesh, place, [active_collection(context)])
         select_only(context, [made])
+        self._tell_place(made, read_surfels(mesh)[0])
         return count
+
+    def _tell_place(self, made, surfels):
+        """Warn of a place so far out that Blender's own numbers are coarse beside the surfels."""
+        step = float(np.spacing(np.abs(np.array(made.matrix_world.translation, np.float32)).max()))
+        if step > _COARSE * float(np.median(surfels.scales)):
+            why = said(
+                "Blender keeps places so far out in steps of {step:.3g}, also those of cameras and lights; this engine "
+                "draws and exports the surfels exactly, other engines up to {aside:.2g} aside",
+                step=step,
+                aside=float(np.linalg.norm(offset_of(made.data))),
+            )
+            self.report({"WARNING"}, why)
 
     def _sentence(self, error):
         return f"{self._name}: {file_sentence(error)}"

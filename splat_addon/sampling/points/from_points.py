@@ -98,10 +98,11 @@ def surfels_from_points(
 
 
 def _middle(positions: np.ndarray) -> np.ndarray:
-    """(3,) the median of each coordinate, or 0 without points. Relative to it most points keep their digits however far
-    away a few others are; the mean or the middle of the bounds would be pulled along."""
+    """(3,) float64 the median of each coordinate, as float32 holds it, or 0 without points. Relative to it most points
+    keep their digits however far away a few others are; the mean or the middle of the bounds would be pulled along."""
     half = len(positions) // 2
-    return np.array([np.partition(column, half)[half] for column in positions.T]) if len(positions) else np.zeros(3)
+    middle = [np.partition(column, half)[half] for column in positions.T] if len(positions) else np.zeros(3)
+    return np.array(middle, np.float32).astype(np.float64)
 
 
 def _estimate(given, neighbours, splat_size, isolated, viewpoint, crease_angle, report, progress):
