@@ -9,7 +9,7 @@ from pathlib import Path
 
 import bpy
 
-from ...whole_files import unfinished
+from ...whole_files import NotWholeError, unfinished
 from .exr_files import is_exr, size_of_exr
 
 #: A .blend ends with a block of this name, which has 32 bytes, or 24 in files of Blender 4.5, or if it is compressed
@@ -23,13 +23,16 @@ _ENDS_BY_NAME = {".tga": b"TRUEVISION-XFILE.\x00"}
 
 
 def save_blend(out: Path) -> None:
-    """Save the open file under another name. Raises as `unfinished`, and RuntimeError with Blender's message."""
+    """Save the open file under another name. Raises as `unfinished`."""
     with unfinished(out, check_blend) as folder:
         # Blender makes paths relative to the folder in which it saves, so that cannot be the hidden one
         beside = folder.with_name(f"{folder.name}.blend")
         try:
             bpy.ops.wm.save_as_mainfile(filepath=str(beside), copy=True, check_existing=False)
             beside.replace(folder / out.name)
+        except RuntimeError as error:
+            why = str(error).removeprefix("Error: ").strip()
+            raise NotWholeError(f"{out} could not be saved, so nothing was changed. {why}") from error
         finally:
             for left in (beside, beside.with_name(f"{beside.name}@")):
                 left.unlink(missing_ok=True)

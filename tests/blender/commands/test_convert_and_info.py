@@ -3,10 +3,14 @@
 
 import json
 import math
+import os
+from concurrent.futures import ThreadPoolExecutor
 
 import bpy
 import numpy as np
 import pytest
+
+from splat_addon.whole_files import unfinished
 
 
 def test_converted_objects_are_in_a_new_file(animation, surfels_command, tmp_path):
@@ -120,6 +124,73 @@ def blocks(animation, surfels_command, tmp_path):
         return about
 
     return convert
+
+
+def test_blocks_that_a_result_lacks_are_not_deleted(blocks, surfels_command, tmp_path):
+    about = blocks()
+    kept = {path.name: path.read_bytes() for path in tmp_path.glob("*.npz")}
+    assert surfels_command("merge", *about)[0] == 0 and not list(tmp_path.glob("*.npz"))
+    result = (tmp_path / "out.blend").read_bytes()
+    for name, contents in kept.items():
+        (tmp_path / name).write_bytes(contents)
+        os.utime(tmp_path / name, ns=((tmp_path / "out.blend").stat().st_mtime_ns + 1,) * 2)
+    code, said = surfels_command("merge", *about)
+    assert code == 1 and "out.blend was there already and is older than" in said
+    assert len(list(tmp_path.glob("*.npz"))) == 2 and (tmp_path / "out.blend").read_bytes() == result
+    (tmp_path / "out.blend").write_bytes(result[:-40])
+    code, said = surfels_command("merge", *about)
+    assert code == 1 and "out.blend is there, but it is not whole: The end of the .blend is missing." in said
+    assert len(list(tmp_path.glob("*.npz"))) == 2
+    (tmp_path / "out.blend").write_bytes(result)
+    assert surfels_command("merge", *about)[0] == 0 and not list(tmp_path.glob("*.npz"))
+
+
+def test_a_block_that_is_cut_off_is_converted_again(animation, surfels_command, tmp_path):
+    arguments = ("convert", "--objects", "floor", "--resolution", 8, "--blocks", 1, "--block", 1)
+    arguments += ("--out", tmp_path / "out.blend")
+    assert surfels_command(*arguments)[0] == 0
+    (block,) = tmp_path.glob("*.npz")
+    whole = block.read_bytes()
+    block.write_bytes(whole[:-100])
+    assert "wrote" in surfels_command(*arguments)[1] and len(block.read_bytes()) == len(whole)
+    assert "there already" in surfels_command(*arguments)[1]
+
+
+def test_paths_in_the_new_file_are_relative_to_its_folder(animation, surfels_command, tmp_path):
+    image = bpy.data.images.new("picture", 4, 4)
+    image.source, image.filepath, image.use_fake_user = "FILE", "//textures/picture.png", True
+    for out in (tmp_path / "out.blend", tmp_path / "new" / "out.blend"):
+        assert surfels_command("convert", "--objects", "floor", "--resolution", 8, "--out", out)[0] == 0
+        with bpy.data.libraries.load(str(out)) as (_, loaded):
+            loaded.images = ["picture"]
+        (found,) = loaded.images
+        assert found.filepath.startswith("//")
+        path = bpy.path.abspath(found.filepath, library=found.library)
+        assert os.path.normpath(path) == str(tmp_path / "textures" / "picture.png")
+
+
+@pytest.mark.parametrize(
+    ("name", "arguments"),
+    [
+        ("out.blend", ("convert", "--objects", "floor", "--resolution", 8, "--out", "//out.blend")),
+        ("frame_0001.exr", ("render", "--frames", 1)),
+        ("frame_0001.exr.tile-1-1-of-1x1.npz", ("render", "--frames", 1, "--tiles", "1x1", "--tile", "1,1")),
+        ("out.blend", ("merge", "--blocks", 1, "--out", "//out.blend")),
+        ("frame_0001.exr", ("merge", "--frames", 1, "--tiles", "1x1")),
+        ("out.surfelblocks", ("store", "--objects", "Sphere surfels", "--out", "//out.surfelblocks")),
+        ("out.pot", ("template", "//out.pot")),
+    ],
+)
+def test_what_another_run_makes_is_left_to_it(name, arguments, animation, surfels_command, tmp_path):
+    with ThreadPoolExecutor(1) as other:
+        claim = unfinished(tmp_path / name, print)
+        folder = other.submit(claim.__enter__).result()
+        (folder / name).write_text("half")
+        code, said = surfels_command(*arguments)
+        assert code == 1 and f"Another run is making {tmp_path / name} at this moment" in said
+        assert (folder / name).read_text() == "half" and not (tmp_path / name).exists()
+        other.submit(claim.__exit__, None, None, None).result()
+    assert (tmp_path / name).read_text() == "half"
 
 
 def test_blocks_with_different_options_are_refused(blocks, surfels_command):
