@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-#: White in a file of integer colours: 255, unless a value needs more.
+#: White in a file of integer colours, and of floats like them: the first, unless a value needs more.
 _WHITES = (255, 65535)
 
 #: The comment of files that this extension wrote.
@@ -98,9 +98,9 @@ def display_color(columns: dict[str, np.ndarray], floats: str = "DISPLAY") -> tu
     """(N, 4) float32 scene-linear colours from red, green, blue and optionally alpha, None if the columns are missing;
     and a sentence about what was assumed, if that is not the rule.
 
-    Colours are sRGB display values, as every program writes them and Blender reads them; floats are scene-linear if
-    floats is "LINEAR". White is 255 in integers of any type, or what the largest value needs, up to the type's limit.
-    In floats it is 1, or 255 or 65535 if there are many values above 10.
+    Colours are sRGB display values, as every program writes them and Blender reads them. White is 255 in integers of
+    any type, or what the largest value needs, up to the type's limit. In floats it is 1, or 255 or 65535 if there are
+    many values above 10; but if `floats` is "LINEAR", they are scene-linear as they are.
     """
     names = next((group for group in _CHANNELS if has(columns, group)), None)
     if names is None:
@@ -109,10 +109,11 @@ def display_color(columns: dict[str, np.ndarray], floats: str = "DISPLAY") -> tu
     alphas = [columns[name] for name in _ALPHAS if name in columns][:1]
     # the alpha of integers is on the scale of the colours, that of floats often is not
     scale = [*channels, *(alpha for alpha in alphas if alpha.dtype.kind != "f")]
-    values = [_not_negative(column) / _white(column, scale) for column in channels]
     values = [
-        v if floats == "LINEAR" and column.dtype.kind == "f" else srgb_to_linear(v)
-        for v, column in zip(values, channels, strict=True)
+        column.astype(np.float64)
+        if floats == "LINEAR" and column.dtype.kind == "f"
+        else srgb_to_linear(_not_negative(column) / _white(column, scale))
+        for column in channels
     ]
     alpha = fractions(alphas[0], channels) if alphas else np.ones(len(values[0]))
     with np.errstate(over="ignore"):
@@ -150,23 +151,21 @@ def _white(column: np.ndarray, columns: list[np.ndarray]) -> np.float64:
         finite = np.concatenate([other[np.isfinite(other)] for other in values])
         if np.count_nonzero(finite > _BRIGHTEST) <= _FEW * len(finite):
             return np.float64(1)
-        return np.float64(
-            next(w for w in _WHITES if np.count_nonzero(finite > w) <= _FEW * len(finite) or w == _WHITES[-1])
-        )
+        small, large = _WHITES
+        return np.float64(large if np.count_nonzero(finite > small) > _FEW * len(finite) else small)
     largest, limit = max(other.max(initial=0) for other in values), np.iinfo(values[0].dtype).max
     return np.float64(min(next((white for white in _WHITES if largest <= white), limit), limit))
 
 
 def _assumed(channels: list[np.ndarray], scale: list[np.ndarray], floats: str) -> list[str]:
     """What was assumed of colours that are not bytes."""
-    kinds, white = {column.dtype.kind for column in channels}, _white(channels[0], scale)
-    if "f" in kinds:
-        meaning = "scene-linear" if floats == "LINEAR" else "display values (sRGB)"
-        return [f"Took the float colours of {len(channels[0]):,} points as {meaning}, where white is {white:g}"]
-    bits = 8 * channels[0].dtype.itemsize
-    if bits == 8:
+    count, white, bits = len(channels[0]), _white(channels[0], scale), 8 * channels[0].dtype.itemsize
+    if not count or bits == 8:
         return []
-    return [f"Took {white:g} as white in the {bits}-bit colours of {len(channels[0]):,} points"]
+    if channels[0].dtype.kind == "f":
+        meaning = "scene-linear" if floats == "LINEAR" else f"display values (sRGB), where white is {white:g}"
+        return [f"Took the float colours of {count:,} points as {meaning}"]
+    return [f"Took {white:g} as white in the {bits}-bit colours of {count:,} points"]
 
 
 def _not_negative(column: np.ndarray) -> np.ndarray:

@@ -51,8 +51,8 @@ def test_float_colours_are_display_values_from_0_to_their_white(ply, kind, white
 
 
 def test_float_colours_are_scene_linear_if_the_caller_says_so(ply):
-    read = floats_of(ply, b"0 0 0 0.25 2 0 0.5\n0 0 0 0 0 0 1\n", float_colors="LINEAR")
-    assert np.allclose(read.colors[0], (0.25, 2, 0, 0.5)) and "scene-linear, where white is 1" in read.said[0]
+    read = floats_of(ply, b"0 0 0 0.25 200 0 0.5\n0 0 0 0 0 0 1\n", float_colors="LINEAR")
+    assert np.allclose(read.colors[0], (0.25, 200, 0, 0.5)) and read.said[0].endswith("of 2 points as scene-linear")
     with pytest.raises(ValueError, match="DISPLAY, LINEAR, not 'SRGB'"):
         floats_of(ply, b"", float_colors="SRGB")
 
