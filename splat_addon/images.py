@@ -36,6 +36,8 @@ class Image:
         pixels = np.asarray(self.pixels, np.float32)
         if pixels.ndim != 3 or pixels.shape[2] != 4 or not pixels.size:
             raise ValueError(f"An image's pixels must have shape (h, w, 4) and at least one pixel, not {pixels.shape}.")
+        if not np.isfinite(pixels).all():
+            raise ValueError("An image's pixels must be finite; make others 0.")
         object.__setattr__(self, "pixels", pixels)
         for name, allowed in (("extension", tuple(EXTENSIONS)), ("interpolation", INTERPOLATIONS)):
             if getattr(self, name) not in allowed:

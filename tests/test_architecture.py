@@ -23,6 +23,7 @@ MAY_IMPORT = {
     "doubts": {"surfels"},
     "primaries": {"surfels"},
     "images": set(),
+    "faults": set(),
     "sampling": {"array_files", "clip_lines", "large_surfels", "quaternions", "surfels", "images"},
     "hierarchy": {"clip_lines", "large_surfels", "quaternions", "surfels"},
     "rendering": {
@@ -51,6 +52,7 @@ MAY_IMPORT = {
         "array_files",
         "claims",
         "doubts",
+        "faults",
         "surfels",
         "primaries",
         "sampling",

@@ -16,7 +16,7 @@ from types import FunctionType
 
 import bpy
 
-from .faults import sentence_of
+from ..faults import sentence_of
 from .ui.wrapped_text import write
 
 #: Sentences of doors that have no report.

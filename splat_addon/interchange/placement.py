@@ -22,7 +22,7 @@ def transformed(surfels: Surfels, matrix: np.ndarray) -> Surfels:
     """
     matrix = np.asarray(matrix, np.float64)
     linear, shift = matrix[:3, :3], matrix[:3, 3]
-    if not np.isfinite(matrix).all() or np.linalg.det(linear) == 0:
+    if not np.isfinite(matrix).all() or flattens(linear):
         raise ValueError("The surfels cannot be moved by a transform that is not finite or has a scale of 0.")
     origin = linear @ surfels.origin + shift
     if (linear == np.eye(3)).all():
@@ -71,6 +71,16 @@ def parts_of(surfels: Surfels | Sequence[Surfels]) -> list[Surfels]:
 def world_positions(parts: list[Surfels]) -> np.ndarray:
     """(N, 3) float64 positions of several sets, origins included."""
     return np.concatenate([part.positions + part.origin for part in parts]) if parts else np.empty((0, 3))
+
+
+#: A map whose shortest axis is below this share of its longest leaves no direction for a normal.
+_FLATTEST = 1e-12
+
+
+def flattens(linear: np.ndarray) -> bool:
+    """Whether a finite (3, 3) map leaves no direction for a normal, so that it has no inverse."""
+    longest, *_, shortest = np.linalg.svd(linear, compute_uv=False)
+    return not shortest > _FLATTEST * longest
 
 
 def joined(parts: list[Surfels]) -> Surfels:

@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
+from functools import reduce
+
 import numpy as np
 
 from .frame import EMPTY_DEPTH, HELD_BY
 from .plan.frame_plan import FramePlan
 from .scene import Scene
 from .scene.camera import Camera
-from .settings import Settings, held_arrays
+from .settings import MAX_SAMPLES, Settings, held_arrays
 
 
 def background_pixel(scene: Scene, settings: Settings) -> tuple[float, float, float, float]:
@@ -50,6 +52,31 @@ def read_tile(target, frame_plan: FramePlan, outputs: tuple[str, ...]) -> dict[s
         texture, where = HELD_BY[name]
         arrays[name] = np.ascontiguousarray(texels[texture][kept, kept, where])
     return arrays
+
+
+#: More could not be added up over all samples of a picture.
+_MOST = float(np.finfo(np.float32).max) / MAX_SAMPLES
+
+
+def mended(arrays: dict[str, np.ndarray]) -> int:
+    """Make the pixels black and empty in which a number is not finite, in place; returns how many there are.
+
+    Numbers that a scene may have can be too large for float32 together. Cycles makes such pixels black, too.
+    """
+    odd = reduce(np.logical_or, map(_are_odd, arrays.values()), False)
+    count = int(np.count_nonzero(odd))
+    for name, values in arrays.items() if count else ():
+        values[odd] = EMPTY_DEPTH if name == "depth" else 0
+        if name == "color":
+            values[odd, 3] = 1
+    return count
+
+
+def _are_odd(values: np.ndarray) -> np.ndarray | bool:
+    """(h, w) bool: the pixels with a number that is not finite, or too large; False if there is none."""
+    with np.errstate(invalid="ignore"):
+        usable = np.abs(values) <= _MOST
+    return False if usable.all() else ~(usable if usable.ndim == 2 else usable.all(axis=2))
 
 
 def positions_of(camera: Camera, depth: np.ndarray, corner: tuple[int, int]) -> np.ndarray:

@@ -27,7 +27,7 @@ from .plan.executor import Execution, TileContext, texture_key
 from .plan.frame_plan import FramePlan
 from .plan.graph import Pause, Texture
 from .plan.shared import Shared
-from .read_back import assembled, background, background_pixel, positions_of, read_tile
+from .read_back import assembled, background, background_pixel, mended, positions_of, read_tile
 from .scene import Scene
 from .scene.camera import Camera
 from .scene.panorama import Panorama
@@ -179,6 +179,7 @@ class Renderer:
         finally:
             self.device.restore()
         arrays = assembled(tiles, size) if tiles else background(scene, size, settings)
+        stats["pixels_not_finite"] = mended(arrays)
         arrays |= identified.arrays
         stats["milliseconds"] = 1e3 * (perf_counter() - started)
         stats["texture_bytes"] = texture_bytes(self.device.textures)

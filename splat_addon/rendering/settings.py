@@ -3,12 +3,12 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 from .frame import OUTPUTS
 from .scene.lines import Lines
 from .scene.matcap import Matcap
+from .scene.numbers import MAX_FACTOR, MAX_LENGTH
 from .scene.ramp import Ramp
 from .shading_models import get_shading_model
 
@@ -125,19 +125,19 @@ class Settings:
             raise ValueError(f"toon_softness must be 0 to 1, not {self.toon_softness}.")
         if self.sum_format not in SUM_FORMATS:
             raise ValueError(f"sum_format must be one of {', '.join(SUM_FORMATS)}, not {self.sum_format!r}.")
-        if int(self.supersampling) != self.supersampling or not 1 <= self.supersampling <= MAX_SUPERSAMPLING:
+        if self.supersampling not in range(1, MAX_SUPERSAMPLING + 1):
             raise ValueError(f"supersampling must be 1 to {MAX_SUPERSAMPLING}, not {self.supersampling}.")
-        if int(self.samples) != self.samples or not 1 <= self.samples <= MAX_SAMPLES:
+        if self.samples not in range(1, MAX_SAMPLES + 1):
             raise ValueError(f"samples must be 1 to {MAX_SAMPLES}, not {self.samples}.")
         if self.multisampling not in MULTISAMPLING:
             raise ValueError(f"multisampling must be one of {MULTISAMPLING}, not {self.multisampling!r}.")
-        if not (math.isfinite(self.edge_threshold) and self.edge_threshold >= 0):
+        if not 0 <= self.edge_threshold <= MAX_FACTOR:
             raise ValueError(f"edge_threshold must be 0 or more splat weights, not {self.edge_threshold}.")
-        if not (math.isfinite(self.detail_tolerance) and self.detail_tolerance >= 0):
+        if not 0 <= self.detail_tolerance <= MAX_FACTOR:
             raise ValueError(f"detail_tolerance must be 0 or more pixels, not {self.detail_tolerance}.")
         if self.shadow_resolution not in range(MAX_SHADOW_RESOLUTION + 1):
             raise ValueError(f"shadow_resolution must be 0 to {MAX_SHADOW_RESOLUTION}, not {self.shadow_resolution}.")
-        if not (math.isfinite(self.ambient_occlusion) and self.ambient_occlusion >= 0):
+        if not 0 <= self.ambient_occlusion <= MAX_LENGTH:
             raise ValueError(f"ambient_occlusion must be a distance of 0 or more, not {self.ambient_occlusion}.")
         if self.layers not in range(1, MAX_LAYERS + 1):
             raise ValueError(f"layers must be 1 to {MAX_LAYERS}, not {self.layers}.")
@@ -154,5 +154,5 @@ class Settings:
             raise ValueError(f"alpha_threshold must be 0 to 1, not {self.alpha_threshold}.")
         if not set(self.outputs) <= set(OUTPUTS):
             raise ValueError(f"outputs must be among {', '.join(OUTPUTS)}, not {self.outputs!r}.")
-        if not (math.isfinite(self.epsilon) and self.epsilon >= 0):
+        if not 0 <= self.epsilon <= MAX_FACTOR:
             raise ValueError(f"epsilon must be 0 or more splat radii, not {self.epsilon}.")

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import splat_addon
-from splat_addon.blender import commands, doors, faults
+from splat_addon import faults
+from splat_addon.blender import commands, doors
 from splat_addon.blender.conversion import bring_back, mesh_conversion
 from splat_addon.blender.engine import final_render
 from splat_addon.blender.export import live_meshes, scene, world

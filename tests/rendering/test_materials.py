@@ -209,10 +209,10 @@ def test_a_tinted_coat_dims_what_the_surface_below_sends_out(lights_splats, rend
     ],
 )
 def test_a_finish_of_unusable_numbers_is_refused(numbers):
-    with pytest.raises(ValueError, match="finite numbers of 0 and more"):
+    with pytest.raises(ValueError, match="A finish's"):
         Finish(**numbers)
 
 
 def test_an_emission_that_is_not_finite_is_refused():
-    with pytest.raises(ValueError, match="finite numbers"):
+    with pytest.raises(ValueError, match="A material's"):
         Material(emission=(np.nan, 0, 0))

@@ -12,8 +12,8 @@ import sys
 
 import bpy
 
+from ...faults import sentence_of
 from .. import doors
-from ..faults import sentence_of
 from . import convert, info, merge, points, render, store, template
 
 NAME = "surfels"

@@ -15,8 +15,8 @@ import bpy
 import numpy as np
 
 from ...doubts import doubts
+from ...faults import sentence_of
 from ...sampling import Sampling, SamplingCancelled, sample_surface
-from ..faults import sentence_of
 from .as_rendered import as_rendered
 from .following import at_origin_of_source, with_short_origin
 from .gathering import groups

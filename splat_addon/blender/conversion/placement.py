@@ -10,6 +10,8 @@ from __future__ import annotations
 import numpy as np
 from mathutils import Matrix
 
+from ...interchange.placement import flattens
+
 #: Blender's matrices are float32; a difference this small, relative to the matrix, is rounding.
 _ROUNDING = 1e-5
 
@@ -46,7 +48,7 @@ def without_shear(matrix_world: Matrix) -> tuple[Matrix, np.ndarray | None]:
     Their product is `matrix_world`. Raises ValueError for a matrix that is not finite or flattens the object.
     """
     whole = finite_matrix(matrix_world)
-    if min(abs(s) for s in matrix_world.to_scale()) == 0.0:
+    if flattens(whole[:3, :3]):
         raise ValueError("The object's scale is 0 along an axis; set all three away from 0.")
     plain = Matrix.LocRotScale(*matrix_world.decompose())
     made = np.array(plain, np.float64)

@@ -9,12 +9,12 @@ from dataclasses import replace
 
 import bpy
 
+from ...faults import is_worded, sentence_of
 from ...rendering import Frame, RenderCancelled, Renderer, open_device
 from ..doors import unattended, with_handlers
 from ..export.camera import depth_of_field_notes, rendered_part, view_camera
 from ..export.live_meshes import LiveMeshes
 from ..export.scene import Notes, SurfelStore, export_scene
-from ..faults import is_worded, sentence_of
 from ..materials import matcap_images
 from ..preferences import most_bytes
 from ..properties import final_settings, stops_where_broken
@@ -125,7 +125,7 @@ def _picture(engine, depsgraph, resources: _Resources, settings, turn: tuple[int
         )
     if frame.stats["unread"] and not engine.is_preview and stops_where_broken(scene):
         raise ValueError(_left_out_sentence(frame.stats["unread"]))
-    for sentence in depth_of_field_notes(camera, settings.samples):
+    for sentence in depth_of_field_notes(camera.evaluated_get(depsgraph), depsgraph, settings.samples):
         notes.add(sentence)
     for sentence in motion_blur_notes(scene, depsgraph.view_layer, settings.samples):
         notes.add(sentence)
@@ -143,6 +143,7 @@ def _tell(engine, frame: Frame, notes: Notes, resources: _Resources) -> None:
     """Report on a picture to the user and to scripts."""
     notes.add(_FLATTENED, frame.stats["instances_degenerate"])
     notes.add(_COARSE, frame.stats["surfels_coarse"])
+    notes.add(_ODD.format(count=frame.stats["pixels_not_finite"]), min(frame.stats["pixels_not_finite"], 1))
     for name in frame.stats["short_of_memory"]:
         notes.add(f"{name}{_SHORT}")
     for sentence in frame.stats["unread"]:
@@ -160,6 +161,7 @@ def _tell(engine, frame: Frame, notes: Notes, resources: _Resources) -> None:
 
 
 _COARSE = "16-bit storage moves surfels visibly where they lie far apart; choose Float 32 as their storage"
+_ODD = "{count:,} pixels are black because their numbers are not finite; look for huge lights, colours or scales"
 _SHORT = " is coarser than it should be; raise Memory of a Surfel File in the preferences"
 _FLATTENED = "Objects with a scale of 0 on some axis are left out; give every axis a scale"
 

@@ -26,7 +26,7 @@ def shutter_times(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer, sampl
     Their density follows the shutter's curve (importance sampling, as in Cycles), so that all have equal weight.
     """
     render = scene.render
-    if not (render.use_motion_blur and view_layer.use_motion_blur) or samples == 1:
+    if not (render.use_motion_blur and view_layer.use_motion_blur) or samples == 1 or _is_odd(render):
         return []
     moments = min(samples, getattr(scene, RENDER_SETTINGS).motion_blur_steps)
     now = scene.frame_current + scene.frame_subframe
@@ -56,8 +56,21 @@ def moving_time(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) 
 
 def motion_blur_notes(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer, samples: int) -> Iterator[str]:
     """Reasons why a scene that requests motion blur will not show any."""
-    if scene.render.use_motion_blur and view_layer.use_motion_blur and samples == 1:
+    if not (scene.render.use_motion_blur and view_layer.use_motion_blur):
+        return
+    if _is_odd(scene.render):
+        yield f"A shutter cannot be open for {scene.render.motion_blur_shutter:g} frames; nothing is blurred"
+    elif samples == 1:
         yield "Motion blur needs Samples above 1 in the render properties; nothing is blurred in this picture"
+
+
+#: A longer shutter ends at no frame that Blender has.
+_LONGEST = 1e5
+
+
+def _is_odd(render: bpy.types.RenderSettings) -> bool:
+    """Whether the time for which the shutter is open cannot be one."""
+    return not 0 <= render.motion_blur_shutter <= _LONGEST
 
 
 def _under_curve(curve: bpy.types.CurveMapping, places: list[float]) -> np.ndarray:

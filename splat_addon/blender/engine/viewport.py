@@ -12,13 +12,13 @@ from weakref import ref
 
 import bpy
 
+from ...faults import sentence_of
 from ...rendering import Arrival, Pace, Refinement, Renderer, Shown, open_device
 from ..doors import unattended
 from ..export.camera import viewport_camera
 from ..export.live_meshes import LiveMeshes
 from ..export.scene import export_scene
 from ..export.sliced_store import SlicedStore
-from ..faults import sentence_of
 from ..materials import matcap_images
 from ..preferences import most_bytes
 from ..properties import viewport_rate, viewport_settings

@@ -9,6 +9,7 @@ from dataclasses import replace
 import bpy
 import numpy as np
 
+from ...faults import sentence_of
 from ...rendering import Camera, EquidistantFisheye, Equirectangular, EquisolidFisheye, Lens, Panorama
 
 
@@ -16,6 +17,9 @@ def picture_size(render: bpy.types.RenderSettings) -> tuple[int, int]:
     """Width and height of the whole frame in pixels, with the percentage applied."""
     share = render.resolution_percentage
     return max(render.resolution_x * share // 100, 1), max(render.resolution_y * share // 100, 1)
+
+
+_BORDER = ("border_min_x", "border_min_y", "border_max_x", "border_max_y")
 
 
 def border(render: bpy.types.RenderSettings) -> tuple[int, int, int, int]:
@@ -43,6 +47,8 @@ def final_camera(depsgraph: bpy.types.Depsgraph, camera_object: bpy.types.Object
 def rendered_part(render: bpy.types.RenderSettings) -> tuple[int, int, int, int] | None:
     """The border: x, y, width, height in pixels; None for the whole frame. Raises ValueError if it contains no
     pixel."""
+    if render.use_border and not np.isfinite(ends := [getattr(render, name) for name in _BORDER]).all():
+        raise ValueError(f"The render border ends at {ends}, which is no place; draw it again or switch it off.")
     x, y, width, height = border(render)
     if width < 1 or height < 1:
         raise ValueError("The render border is less than a pixel; draw a larger one or switch it off.")
@@ -59,7 +65,10 @@ def _whole_camera(depsgraph: bpy.types.Depsgraph, camera_object: bpy.types.Objec
         raise ValueError(
             f"The camera {camera_object.name!r} is {kind}; make it perspective, orthographic or panoramic."
         )
-    return _KINDS[camera_object.data.type](camera_object, depsgraph)
+    try:
+        return _KINDS[camera_object.data.type](camera_object, depsgraph)
+    except ValueError as error:
+        raise ValueError(f"The camera {camera_object.name!r} cannot be used: {sentence_of(error)}") from error
 
 
 def _flat_camera(camera_object: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Camera:
@@ -153,19 +162,33 @@ def _fitted_pixels(data: bpy.types.Camera, render: bpy.types.RenderSettings) -> 
     return width if fits_width else height * aspect_y / aspect_x
 
 
-def depth_of_field_notes(camera_object: bpy.types.Object, samples: int) -> Iterator[str]:
-    """Reasons why a camera that requests depth of field will not show any."""
+def depth_of_field_notes(
+    camera_object: bpy.types.Object, depsgraph: bpy.types.Depsgraph, samples: int
+) -> Iterator[str]:
+    """Reasons why a camera that requests depth of field will not show any. camera_object: evaluated."""
     if not camera_object.data.dof.use_dof:
         return
     if camera_object.data.type != "PERSP":
         yield "Depth of field needs a perspective camera; nothing is blurred in this picture"
     elif samples == 1:
         yield "Depth of field needs Samples above 1 in the render properties; nothing is blurred in this picture"
+    else:
+        try:
+            _asked_lens(camera_object, depsgraph)
+        except ValueError as error:
+            yield f"{sentence_of(error)} Nothing is blurred in this picture"
 
 
 def _lens(camera_object: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Lens | None:
-    """The lens of a perspective camera with depth of field, as in Cycles: millimetres of focal length divided by the
-    F-stop."""
+    """The lens of a perspective camera with depth of field, if there can be one."""
+    try:
+        return _asked_lens(camera_object, depsgraph)
+    except ValueError:
+        return None  # `depth_of_field_notes` says why
+
+
+def _asked_lens(camera_object: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> Lens | None:
+    """The lens as in Cycles: millimetres of focal length divided by the F-stop. Raises ValueError for odd numbers."""
     data, dof = camera_object.data, camera_object.data.dof
     if not dof.use_dof or data.type != "PERSP":
         return None

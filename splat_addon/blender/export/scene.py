@@ -13,6 +13,7 @@ from typing import NamedTuple
 import bpy
 import numpy as np
 
+from ...faults import sentence_of
 from ...primaries import recolored
 from ...rendering import Instance, Light, Scene
 from ...rendering.detail.levels import replaced
@@ -21,7 +22,6 @@ from ...surfels import Surfels
 from ..conversion.changed_sources import ChangedSources
 from ..conversion.placement import finite_matrix
 from ..conversion.source_record import is_stood_in, sources_in
-from ..faults import sentence_of
 from ..geometry.attributes import (
     Points,
     has_surfels,

@@ -12,9 +12,12 @@ import numpy as np
 
 from ...rendering import Finish, Light, Material
 from ...rendering.scene.material import reflectance
+from ..geometry.node_groups import nodes_in
 from ..materials.mean_surfaces import mean_of
 from ..materials.node_trees import uses_nodes
+from ..materials.socket_ranges import is_radiance
 from ..materials.surface_shaders import CLEAR, Part, Shader, is_holdout, parts, surface_shader, why_unseen
+from ..materials.texture_images import odd_pixels_sentence
 from . import passed_over
 
 #: Blender's light type -> its emitting area, by which the energy of a non-normalised light is multiplied, as in Cycles:
@@ -32,6 +35,8 @@ def light_of(light: bpy.types.Light, matrix_world: np.ndarray, notes) -> Light |
     if light.use_temperature:
         color = color * np.array(light.temperature_color, np.float64)
     shape = _SHAPES[light.type](light, matrix_world)
+    if light.type != "POINT":
+        shape["direction"] = _direction(matrix_world)
     if light.type == "AREA" and np.linalg.norm(np.cross(*shape["half_axes"])) == 0:
         notes.add(f"The area light {light.name!r} has no area and gives no light; give it a size and a scale above 0")
         return None
@@ -40,7 +45,6 @@ def light_of(light: bpy.types.Light, matrix_world: np.ndarray, notes) -> Light |
         tuple(color),
         light.energy * 2.0**light.exposure,
         position=tuple(matrix_world[:3, 3]),
-        direction=tuple(-matrix_world[:3, 2]),
         casts_shadow=light.use_shadow,
         **shape,
     )
@@ -48,6 +52,12 @@ def light_of(light: bpy.types.Light, matrix_world: np.ndarray, notes) -> Light |
         return made
     area = made.area if light.type == "AREA" else _AREAS[light.type](light)
     return replace(made, energy=made.energy * area)
+
+
+def _direction(matrix_world: np.ndarray) -> tuple[float, float, float]:
+    if not matrix_world[:3, 2].any():
+        raise ValueError("Its scale is 0 along Z, so that it has no direction; set it away from 0.")
+    return tuple(-matrix_world[:3, 2])
 
 
 def _area_shape(light: bpy.types.AreaLight, matrix_world: np.ndarray) -> dict:
@@ -89,13 +99,9 @@ def color_times_strength(shader: Shader, owner: str, notes) -> tuple[float, floa
 
 BLACK = (0.0, 0.0, 0.0)
 
-#: Maximum radiance of a world or a material per channel: more would overflow float32 after lighting.
-MAX_RADIANCE = 1e30
-
-
 def finite_radiance(radiance: tuple[float, float, float], owner: str, notes) -> tuple[float, float, float]:
     """The radiance; if pictures cannot represent it, black and a note. owner: the subject of a sentence."""
-    if all(abs(channel) <= MAX_RADIANCE for channel in radiance):
+    if is_radiance(radiance):
         return radiance
     red, green, blue = radiance
     notes.add(f"{owner} emits {red:g}, {green:g}, {blue:g}, more than a picture can store; it is rendered black")
@@ -129,13 +135,17 @@ def shading_material(material: bpy.types.Material | None, notes, own: Collection
         return Material(index=material.pass_index)
     for sentence in passed_over.of_material(material, [part.shader for part in known]):
         notes.add(sentence)
+    for image in {node.image for node in nodes_in(material.node_tree) if getattr(node, "image", None)}:
+        if sentence := odd_pixels_sentence(image):
+            notes.add(sentence)
+    if odd := sorted({number for part in known for number in part.shader.odd_numbers()}):
+        notes.add(f"The material {material.name!r} has numbers that no surface has: {', '.join(odd)}")
     made = [_made(part.shader, material, notes, own) for part in known]
     if len(made) > 1 or known[0].share > 1:
         notes.add(
             f"The material {material.name!r} mixes shaders, which this engine draws as one with their mean settings"
         )
-        sent = mean_of(shader).surface.emission
-        sent = finite_radiance(sent.value, f"The material {material.name!r}", notes) if sent else BLACK
+        sent = finite_radiance(mean_of(shader).sent, f"The material {material.name!r}", notes)
         made = [replace(_mean(made, known), emission=sent)]
     return replace(made[0], index=material.pass_index)
 
@@ -152,7 +162,7 @@ def _mean(materials: list[Material], mixed: list[Part]) -> Material:
 def _made(shader: Shader, material: bpy.types.Material, notes, own: Collection[str]) -> Material:
     """The material of one of its shaders."""
     fields, make = _SHADERS[shader.node.type]
-    plain = _in_range({name: _value(shader, name) for name in fields}, material, notes)
+    plain = {name: _value(shader, name) for name in fields}
     if emission := [name for name, field in fields.items() if field == "emission"]:
         sent = finite_radiance(_sent(plain, *emission), f"The material {material.name!r}", notes)
         plain |= dict(zip(emission, (sent, 1.0), strict=True))
@@ -177,45 +187,6 @@ def _value(shader: Shader, name: str):
     """The plain value of a socket."""
     value = shader.plain(name).value
     return value[0] if len(value) == 1 else value
-
-
-#: A number that no surface needs, and whose square float32 still holds.
-_HUGE = 1e15
-
-#: socket -> the range of its numbers, as in Cycles, where NaN counts as the least, too. There, coat and sheen may cover
-#: more than all of a surface.
-_RANGES = {
-    "Roughness": (0.0, 1.0),
-    "Metallic": (0.0, 1.0),
-    "IOR": (1e-5, 1e5),
-    "Specular IOR Level": (0.0, _HUGE),
-    "Specular Tint": (0.0, _HUGE),
-    "Coat Weight": (0.0, 1.0),
-    "Coat Roughness": (0.0, 1.0),
-    "Coat IOR": (1.0, 1e5),
-    "Coat Tint": (0.0, _HUGE),
-    "Sheen Weight": (0.0, 1.0),
-    "Sheen Roughness": (0.0, 1.0),
-    "Sheen Tint": (0.0, _HUGE),
-}
-
-
-def _in_range(plain: dict, material: bpy.types.Material, notes) -> dict:
-    """The sockets' values with numbers outside their range replaced by its nearest end, and a note on those."""
-    moved = []
-    for name in plain.keys() & _RANGES:
-        given, (least, greatest) = np.array(plain[name], np.float64), _RANGES[name]
-        taken = np.clip(np.where(np.isnan(given), least, given), least, greatest)
-        if not np.array_equal(taken, given):
-            moved.append(f"{name} {_number(given)} counts as {_number(taken)}")
-            plain[name] = tuple(taken.tolist()) if taken.ndim else float(taken)
-    if moved:
-        notes.add(f"The material {material.name!r} has numbers that no surface has: {', '.join(sorted(moved))}")
-    return plain
-
-
-def _number(value: np.ndarray) -> str:
-    return ", ".join(f"{number:g}" for number in value.ravel())
 
 
 def _principled(plain: dict) -> Material:

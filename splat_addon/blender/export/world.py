@@ -16,9 +16,9 @@ from ...rendering.device.interface import MAX_TEXTURE_EDGE
 from ...rendering.scene.sun_apart import sun_apart
 from ..materials.node_trees import uses_nodes
 from ..materials.surface_shaders import Part
-from ..materials.texture_images import UnreadableError, fingerprint, linear_pixels, settings_of
+from ..materials.texture_images import UnreadableError, fingerprint, linear_pixels, odd_pixels_sentence, settings_of
 from . import passed_over
-from .shading import BLACK, MAX_RADIANCE, color_times_strength, finite_radiance
+from .shading import BLACK, color_times_strength, finite_radiance
 from .world_shaders import backgrounds
 
 Color = tuple[float, float, float]
@@ -93,10 +93,8 @@ def _read(picture: _Picture) -> tuple[Environment, tuple[str, ...]]:
     """The environment, and notes on what it lacks. Raises UnreadableError."""
     image, notes = picture.image, []
     pixels = linear_pixels(image, keep_alpha=False)[..., :3]
-    bad = ~(np.abs(pixels) <= MAX_RADIANCE)
-    if bad.any():
-        notes.append(f"The world's picture {image.name!r} has infinite or too large numbers; they count as 0")
-        pixels = np.where(bad, 0, pixels)
+    if sentence := odd_pixels_sentence(image):
+        notes.append(sentence)
     steps = [-(-edge // MAX_TEXTURE_EDGE) for edge in pixels.shape[:2]]
     if max(steps) > 1:
         pixels = _reduced(pixels, *steps)

@@ -15,6 +15,7 @@ from typing import Any
 import bpy
 import numpy as np
 
+from ...interchange.placement import flattens
 from .attributes import has_surfels
 from .points_proxy import is_points_modifier, shows_as_points
 from .reading import readable_mesh
@@ -107,7 +108,7 @@ def shown_by(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph, read: Rea
                 shown.types.add(object_.type)
             continue
         matrix = np.array(entry.matrix_world, np.float64)
-        if entry.is_instance and not abs(np.linalg.det(matrix[:3, :3])) > 0:
+        if entry.is_instance and (not np.isfinite(matrix).all() or flattens(matrix[:3, :3])):
             shown.skip(_FLATTENED)
             continue
         key = mesh_key(object_)

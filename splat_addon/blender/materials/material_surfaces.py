@@ -20,6 +20,7 @@ from .mean_surfaces import mean_of
 from .node_products import AttributeSource, ImageSource, Product, linked, outer, product
 from .node_trees import called, uses_nodes
 from .shader_mixes import channels
+from .socket_ranges import finite_factors, in_range, is_radiance
 from .surface_shaders import METALS, SHADERS, Shader, is_holdout, surface_shader, why_unseen
 from .texture_images import UnreadableError, linear_pixels
 from .texture_placement import placement, uv_layer
@@ -108,7 +109,7 @@ def _mapped(image: Image, source: ImageSource) -> Image:
     values = pixels[..., :3] if source.weights is None else (pixels @ np.float32(source.weights))[..., None]
     for function in source.functions:
         values = function(values)
-    pixels[..., :3] = values
+    pixels[..., :3] = finite_factors(values)
     if source.weights is not None:
         pixels[..., 3] = 1
     return replace(image, pixels=pixels)
@@ -121,7 +122,7 @@ def material_surface(material: bpy.types.Material | None, layers: MeshLayers) ->
     """
     if material is None:
         return _bare_surface(layers), []
-    plain = Surface(Channel(tuple(material.diffuse_color)))
+    plain = Surface(Channel(_display_color(material)))
     if not uses_nodes(material):
         return plain, []
     shader = surface_shader(material)
@@ -159,9 +160,15 @@ def plain_color(material: bpy.types.Material) -> tuple[tuple[float, float, float
     shader = surface_shader(material) if uses_nodes(material) else None
     if shader is None:
         is_unseen = why_unseen(material) is not None
-        return (0.0, 0.0, 0.0, 0.0) if is_unseen else tuple(material.diffuse_color), False
+        return (0.0, 0.0, 0.0, 0.0) if is_unseen else _display_color(material), False
     mean = mean_of(shader)
     return mean.surface.color.value, not mean.unsure.isdisjoint(("color", "opacity"))
+
+
+def _display_color(material: bpy.types.Material) -> tuple[float, float, float, float]:
+    """What a material without nodes looks like."""
+    *color, alpha = material.diffuse_color
+    return *in_range("Base Color", color), *in_range("Alpha", (alpha,))
 
 
 def _bare_surface(layers: MeshLayers) -> Surface:
@@ -221,7 +228,10 @@ class _Reader:
             factors = tuple(self._factor(source, _is_alpha(source) and source.is_number) for source in read.sources)
         except UnreadableError as error:
             read, factors = self._plain(name, error), ()
-        return Channel(read.value * (3 // len(read.value)) if name == "emission" else read.value, factors)
+        if name != "emission":
+            return Channel(read.value, factors)
+        sent = read.value * (3 // len(read.value))
+        return Channel(sent, factors) if is_radiance(sent) else Channel((0.0, 0.0, 0.0))
 
     def _product(self, name: str) -> Product:
         first, *others = self._sockets[name]
@@ -270,13 +280,18 @@ class _Reader:
         strength, _ = outer(node.inputs["Strength"], groups)
         if linked(strength) is not None:
             raise UnreadableError("a normal map whose strength is linked")
+        if not 0 <= strength.default_value <= _STRONGEST:
+            raise UnreadableError(f"a normal map of strength {strength.default_value:g}")
         if linked(node.inputs["Color"]) is None:
             return None
         read = product(node.inputs["Color"], groups)
         color = Channel(read.value, tuple(self._factor(source, False) for source in read.sources))
         layer = self._layers.uv(uv_layer(node.uv_map, self._layers.mesh)) if node.space == "TANGENT" else 0
-        return NormalMap(color, max(strength.default_value, 0.0), layer, node.space)
+        return NormalMap(color, strength.default_value, layer, node.space)
 
+
+#: Strength of a normal map beyond which float32 overflows.
+_STRONGEST = 1e15
 
 #: Spaces of a Normal Map node that `NormalMap` supports.
 _SPACES = ("TANGENT", "OBJECT")

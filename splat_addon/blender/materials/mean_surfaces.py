@@ -12,6 +12,7 @@ import numpy as np
 
 from ...sampling import Channel, Surface
 from .node_products import Product
+from .socket_ranges import is_radiance
 from .surface_shaders import CLEAR, SHADERS, Part, Shader, parts
 from .texture_images import UnreadableError
 
@@ -21,10 +22,11 @@ LEAST_OPACITY = 1e-4
 
 @dataclass(frozen=True, eq=False)
 class Mean:
-    """surface: of plain numbers. unsure: its channels that depend on more than numbers. only: the shader that alone is
-    left of a tree, which can be read by itself."""
+    """surface: of plain numbers. sent: (3,) what it emits, also if no picture can represent that. unsure: its channels
+    that depend on more than numbers. only: the shader that alone is left of a tree, which can be read by itself."""
 
     surface: Surface
+    sent: tuple[float, float, float]
     unsure: frozenset[str]
     only: Shader | None
 
@@ -46,8 +48,9 @@ def mean_of(shader: Shader) -> Mean:
         emission += part.share * opacity * _value(part, "emission", 0.0, unsure)
     opacity = float(np.clip(1 - through, 0, 1))
     color, emission = (part / opacity if opacity > LEAST_OPACITY else np.zeros(3) for part in (color, emission))
-    sent = Channel(tuple(emission.tolist())) if emission.any() else None
-    return Mean(Surface(Channel((*color.tolist(), opacity)), emission=sent), frozenset(unsure), only)
+    sent = tuple(emission.tolist())
+    shown = Channel(sent) if any(sent) and is_radiance(sent) else None
+    return Mean(Surface(Channel((*color.tolist(), opacity)), emission=shown), sent, frozenset(unsure), only)
 
 
 def _value(part: Part, channel: str, default: float, unsure: set[str]) -> np.ndarray:

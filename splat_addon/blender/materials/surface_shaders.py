@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import bpy
 
 from ..working_space import luminance
 from .node_products import MAX_CHAIN, Product, constant, linked, outer, passed_through_link, product, within
 from .node_trees import uses_nodes
+from .socket_ranges import finite_factors, has_range, in_range
 from .texture_images import UnreadableError
 
 Node = bpy.types.Node
@@ -64,13 +65,30 @@ class Shader:
 
     def product(self, name: str) -> Product:
         """An input as a product. Raises UnreadableError."""
-        return product(self.node.inputs[name], self.groups)
+        read = product(self.node.inputs[name], self.groups)
+        if read.sources:
+            return replace(read, value=tuple(finite_factors(read.value).tolist()))
+        return self._taken(name, read)
 
     def plain(self, name: str) -> Product:
         """The value of an input without what is linked to it."""
+        return self._taken(name, self._own(name))
+
+    def odd_numbers(self) -> Iterator[str]:
+        """The inputs whose own values lie beyond what the shader takes, and what they count as."""
+        for socket in self.node.inputs:
+            if has_range(self.node, socket.name):
+                given = self._own(socket.name).value
+                if (taken := in_range(socket.name, given)) != given:
+                    yield f"{socket.name} {_numbers(given)} counts as {_numbers(taken)}"
+
+    def _own(self, name: str) -> Product:
         read = constant(self.socket(name))
         number = self.node.inputs[name].type == "VALUE"
         return read.weighted(luminance()) if number else Product(read.value * (3 // len(read.value)))
+
+    def _taken(self, name: str, read: Product) -> Product:
+        return replace(read, value=in_range(name, read.value)) if has_range(self.node, name) else read
 
     @property
     def is_clear(self) -> bool:
@@ -84,6 +102,10 @@ class Shader:
     def feeding(self, socket: Socket) -> Shader | None:
         """The shader that feeds one of its sockets."""
         return shader_at(socket, self.groups)
+
+
+def _numbers(value: tuple[float, ...]) -> str:
+    return ", ".join(f"{number:g}" for number in value)
 
 
 def surface_shader(owner: bpy.types.Material | bpy.types.World | bpy.types.Light) -> Shader | None:
@@ -150,7 +172,7 @@ def mix_factor(mix: Shader) -> tuple[float, bool]:
         read = None
     is_constant = read is not None and not read.sources
     value = read.value[0] if is_constant else socket.default_value
-    return min(max(value, 0.0), 1.0), is_constant
+    return min(value, 1.0) if value > 0 else 0.0, is_constant
 
 
 def parts(shader: Shader, factor_of: Callable[[Shader], tuple[float, bool]] = mix_factor) -> Iterator[Part]:

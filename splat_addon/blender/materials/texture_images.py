@@ -15,6 +15,7 @@ import bpy
 import numpy as np
 
 from ...primaries import converted
+from ...rendering.scene.numbers import MAX_RADIANCE
 from .. import working_space
 
 
@@ -30,6 +31,7 @@ def linear_pixels(image: bpy.types.Image, keep_alpha: bool, is_apart: bool = Fal
     mode None an image has no alpha to keep.
     is_apart: whether something else uses the alpha that is not kept. Then Cycles divides the interpolated colour by it,
     so the colour continues beyond the rim of what is covered.
+    Pixels with a number that is infinite or too large are 0 in all channels, as in Cycles, and counted in `odd_pixels`.
     Raises UnreadableError for an image without pixels, a tiled or moving one, or a colour space that is not there.
     """
     if image.source not in ("FILE", "GENERATED"):
@@ -49,6 +51,9 @@ def linear_pixels(image: bpy.types.Image, keep_alpha: bool, is_apart: bool = Fal
         _decode(pixels, image)
         if is_related and not is_divided:
             colors *= alpha
+    is_odd = ~(np.abs(pixels) <= MAX_RADIANCE).all(axis=2)
+    odd_pixels[image.session_uid] = int(np.count_nonzero(is_odd))
+    pixels[is_odd] = 0
     if is_related and is_apart:
         _continue_beyond_rim(colors, alpha)
     if not has_alpha:
@@ -82,6 +87,17 @@ def _as_stored(image: bpy.types.Image) -> np.ndarray:
         return _rgba(_stored_pixels(twin), twin)[..., :3]
     finally:
         bpy.data.images.remove(twin)
+
+
+#: session_uid of each image -> how many of its pixels were no colours when it was last read
+odd_pixels: dict[int, int] = {}
+
+
+def odd_pixels_sentence(image: bpy.types.Image) -> str:
+    """What to say about pixels that were no colours; empty if there were none."""
+    count = odd_pixels.get(image.session_uid, 0)
+    what = f"The image {image.name!r} has infinite or too large numbers"
+    return f"{what}; its pixels that count as 0: {count:,}" if count else ""
 
 
 def settings_of(image: bpy.types.Image) -> tuple:

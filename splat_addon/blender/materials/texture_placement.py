@@ -86,6 +86,10 @@ def _rows(matrix: np.ndarray) -> np.ndarray | None:
     return None if (matrix == np.eye(3)).all() else matrix[:2]
 
 
+#: Products of coordinates of textures must fit into float32.
+_FARTHEST = 1e15
+
+
 def _mapping(node: bpy.types.ShaderNodeMapping) -> np.ndarray:
     """(3, 3) matrix of a Mapping node for u, v, 1; the third coordinate of a texture is 0 and is ignored."""
     names = ("Location", "Rotation", "Scale")
@@ -96,6 +100,8 @@ def _mapping(node: bpy.types.ShaderNodeMapping) -> np.ndarray:
     linear, shift = _MAPPINGS[node.vector_type](location, np.array(Euler(rotation).to_matrix(), np.float64), scale)
     matrix = np.eye(3)
     matrix[:2, :2], matrix[:2, 2] = linear[:2, :2], shift[:2]
+    if not (np.abs(matrix) <= _FARTHEST).all():
+        raise UnreadableError("an image texture that is placed by a Mapping node with infinite or too large numbers")
     return matrix
 
 

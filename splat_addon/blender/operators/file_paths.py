@@ -6,7 +6,7 @@ from __future__ import annotations
 import bpy
 from bpy.props import StringProperty
 
-from ..faults import sentence_of
+from ...faults import sentence_of
 
 #: Blender warns scripts that pass // to a path that does not declare support for it; 4.5 knows the option, 5.2 warns.
 _OPTIONS = {"SKIP_PRESET", "PATH_SUPPORTS_BLEND_RELATIVE"}

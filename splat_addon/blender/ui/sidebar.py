@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import bpy
 
+from ...faults import sentence_of
 from ...sampling import UNKNOWN_FLAT_EXTENTS
 from ..conversion.automatic_density import automatic_spacing
 from ..conversion.camera_density import without_camera
@@ -16,7 +17,6 @@ from ..conversion.prediction import Extent, known_extents
 from ..conversion.source_record import record_of, sources_of
 from ..doors import register_classes_factory
 from ..export.object_detail import detail_of, finer
-from ..faults import sentence_of
 from ..geometry.sources import is_surfel_object
 from ..geometry.surfel_files import file_of
 from ..ids import (

@@ -124,7 +124,8 @@ def mean_frame(frames: Iterable[Frame]) -> Frame:
         for name, elapsed in frame.stats["passes"].items():
             passes[name] = passes.get(name, 0.0) + elapsed
         unread |= dict.fromkeys(frame.stats.get("unread", ()))
-        count, stats = count + 1, frame.stats
+        odd = max(stats.get("pixels_not_finite", 0), frame.stats["pixels_not_finite"])
+        count, stats = count + 1, {**frame.stats, "pixels_not_finite": odd}
     stats = {**stats, "milliseconds": milliseconds, "passes": passes, "unread": tuple(unread), "samples": count}
     means = {name: total / np.float32(count) for name, total in sums.items()}
     arrays = means | nearest | {"cryptomatte": matte and matte.over(count)}

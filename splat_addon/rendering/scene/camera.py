@@ -12,6 +12,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from .lens import Lens
+from .numbers import MAX_FACTOR, MAX_INDEX, check_range
 from .window import Windowed
 
 #: Variance of the Gaussian that filters a pixel, in square pixels.
@@ -40,26 +41,9 @@ class Camera(Windowed):
     pixel_variance: float = PIXEL_VARIANCE
 
     def __post_init__(self):
-        matrix = np.array(self.matrix_world, np.float64)
-        if matrix.shape != (4, 4) or not np.isfinite(matrix).all():
-            raise ValueError("The camera's matrix_world must be 4 x 4 finite numbers.")
-        lengths = np.linalg.norm(matrix[:3, :3], axis=0)
-        if not (lengths > 0).all():
-            raise ValueError("The camera's matrix_world has a zero axis; set the camera's scale to 1.")
-        matrix[:3, :3] /= lengths
-        matrix.flags.writeable = False
-        object.__setattr__(self, "matrix_world", matrix)
-        left, right, bottom, top = (float(v) for v in self.window)
-        if not (math.isfinite(right - left) and math.isfinite(top - bottom) and left < right and bottom < top):
-            raise ValueError(f"The camera's window must be left < right, bottom < top, not {self.window}.")
-        object.__setattr__(self, "window", (left, right, bottom, top))
-        width, height = self.size
-        if int(width) != width or int(height) != height or width < 1 or height < 1:
-            raise ValueError(f"A picture needs at least 1 x 1 whole pixels, not {width} x {height}.")
-        object.__setattr__(self, "size", (int(width), int(height)))
-        if not self.near < self.far < math.inf or (not self.is_orthographic and not self.near > 0):
-            raise ValueError(f"Clip distances must be 0 < near < far, not near {self.near}, far {self.far}.")
-
+        self._check(may_begin_behind=self.is_orthographic)
+        check_range("A pixel's variance", self.pixel_variance, 0.0, MAX_FACTOR)
+        check_range("A camera's sample", self.sample, 0, MAX_INDEX, is_whole=True)
         if self.lens and self.is_orthographic:
             raise ValueError("A lens needs a perspective camera: through one, parallel views are no longer parallel.")
 

@@ -13,6 +13,7 @@ from functools import cached_property, partial
 import numpy as np
 
 from .equirectangular import equirectangular_directions
+from .numbers import MAX_RADIANCE, check_range
 from .picture_sun import PictureSun, brightest_place, excess_of, sun_in
 from .texels import opaque_texels
 
@@ -41,8 +42,9 @@ class Environment:
             raise ValueError(f"An environment's pixels must have shape (h, w, 3), not {pixels.shape}.")
         if rotation.shape != (3, 3) or not np.isfinite(rotation).all():
             raise ValueError("An environment's rotation must be 3 x 3 finite numbers.")
-        if not np.isfinite(pixels).all():
-            raise ValueError(f"{np.count_nonzero(~np.isfinite(pixels))} numbers of the environment are not finite.")
+        check_range("The numbers of an environment's rotation", rotation, -2.0, 2.0)
+        if bad := np.count_nonzero(~(np.abs(pixels) <= MAX_RADIANCE)):
+            raise ValueError(f"{bad} numbers of the environment are not finite, or too large; make them 0.")
         object.__setattr__(self, "pixels", pixels)
         object.__setattr__(self, "rotation", rotation)
 

@@ -3,9 +3,9 @@
 
 from __future__ import annotations
 
-from dataclasses import astuple, dataclass
+from dataclasses import dataclass
 
-import numpy as np
+from .numbers import MAX_FACTOR, check_radiance, check_range
 
 
 @dataclass(frozen=True)
@@ -29,10 +29,12 @@ class Finish:
     sheen_tint: tuple[float, float, float] = (1.0, 1.0, 1.0)
 
     def __post_init__(self):
-        numbers = [number for value in astuple(self) for number in np.atleast_1d(value)]
-        are_colors = len(self.specular_tint) == len(self.coat_tint) == len(self.sheen_tint) == 3
-        if not (np.isfinite(numbers).all() and min(numbers) >= 0 and are_colors):
-            raise ValueError(f"A finish needs finite numbers of 0 and more, and colours of 3, not {self}.")
+        for name in ("coat", "coat_roughness", "sheen", "sheen_roughness"):
+            check_range(f"A finish's {name}", getattr(self, name), 0.0, 1.0)
+        check_range("A finish's coat_ior", self.coat_ior, 1.0, 1e6)
+        for name in ("specular_tint", "coat_tint", "sheen_tint"):
+            check_range(f"A finish's {name}", getattr(self, name), 0.0, MAX_FACTOR)
+            check_radiance(f"A finish's {name}", getattr(self, name))
 
     @property
     def layers(self) -> tuple[str, ...]:

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .numbers import MAX_FACTOR, MAX_INDEX, MAX_LENGTH, MIN_LENGTH, check_range
+
 
 @dataclass(frozen=True)
 class Lens:
@@ -26,11 +28,12 @@ class Lens:
     ratio: float = 1.0
 
     def __post_init__(self):
-        if not (0 < self.radius < math.inf):
+        if not MIN_LENGTH <= self.radius <= MAX_LENGTH:
             raise ValueError(f"A lens needs a radius above 0, not {self.radius}; a pinhole camera has no lens.")
-        if not (0 < self.focus_distance < math.inf):
+        if not MIN_LENGTH <= self.focus_distance <= MAX_LENGTH:
             raise ValueError(f"A lens cannot focus at the distance {self.focus_distance}; move it before the camera.")
-        if not (0 < self.ratio < math.inf and math.isfinite(self.rotation)):
+        check_range("The number of a lens's blades", self.blades, -MAX_INDEX, MAX_INDEX, is_whole=True)
+        if not (MIN_LENGTH <= self.ratio <= MAX_FACTOR and math.isfinite(self.rotation)):
             raise ValueError(f"A lens needs a ratio above 0 and a finite rotation, not {self.ratio}, {self.rotation}.")
 
     def points(self, unit: np.ndarray) -> np.ndarray:

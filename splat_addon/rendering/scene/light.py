@@ -8,6 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .numbers import MAX_LENGTH, MIN_LENGTH, check_lengths, check_range
+
 #: Wider suns are shaded with this half-angle: half of the sky.
 MAX_SUN_HALF_ANGLE = 1.4
 
@@ -63,8 +65,12 @@ class Light:
                 f"A light's colour times its energy must be at most {largest:g}, which pictures can hold, not "
                 f"{np.asarray(self.color).tolist()} times {float(self.energy):g}."
             )
-        if not np.any(self.direction):
-            raise ValueError("A light's direction must not be zero.")
+        for name in ("position", "size", "half_axes"):
+            check_lengths(f"A light's {name}", getattr(self, name))
+        check_range("A light's spot_angle", self.spot_angle, 0.0, 2 * math.pi)
+        check_range("A light's spot_blend", self.spot_blend, 0.0, 1.0)
+        if not MIN_LENGTH <= np.abs(self.direction).max() <= MAX_LENGTH:
+            raise ValueError(f"A light's direction must not be zero or endless, but is {self.direction}.")
         if self.size < 0:
             raise ValueError(f"A light's size must be 0 or more, not {self.size}.")
         if self.kind == "area" and not self.area > 0:

@@ -6,6 +6,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from .numbers import MAX_FACTOR, MAX_RADIANCE
+
 MAX_WIDTH = 16.0
 
 #: A crease must turn the normal within this many pixels beside a line.
@@ -32,11 +34,11 @@ class Lines:
         object.__setattr__(self, "color", tuple(float(c) for c in self.color))
         if not 0 < self.width <= MAX_WIDTH:
             raise ValueError(f"A line's width must be above 0 and at most {MAX_WIDTH:g} pixels, not {self.width}.")
-        if len(self.color) != 3 or not all(math.isfinite(c) and c >= 0 for c in self.color):
+        if len(self.color) != 3 or not all(0 <= c <= MAX_RADIANCE for c in self.color):
             raise ValueError(f"A line's color must be three numbers of 0 or more, not {self.color}.")
         if not 0 < self.crease_angle <= math.pi:
             raise ValueError(f"crease_angle must be above 0 and at most pi, not {self.crease_angle}.")
-        if not (math.isfinite(self.depth_threshold) and self.depth_threshold >= 0):
+        if not 0 <= self.depth_threshold <= MAX_FACTOR:
             raise ValueError(f"depth_threshold must be 0 or more pixels, not {self.depth_threshold}.")
 
         if not 0 <= self.shallow_angle <= math.pi / 2:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .numbers import MAX_RADIANCE, check_range
 from .texels import opaque_texels
 
 
@@ -20,8 +21,7 @@ class Matcap:
         pixels = np.ascontiguousarray(self.pixels, np.float32)
         if pixels.ndim != 3 or pixels.shape[2] != 3 or 0 in pixels.shape:
             raise ValueError(f"A matcap's pixels must be (height, width, 3), not {pixels.shape}.")
-        if not np.isfinite(pixels).all():
-            raise ValueError("A matcap's pixels must be finite.")
+        check_range("A matcap's pixels", pixels, -MAX_RADIANCE, MAX_RADIANCE)
         object.__setattr__(self, "pixels", pixels)
 
     def texels(self) -> np.ndarray:

@@ -10,6 +10,7 @@ import numpy as np
 
 from ...images import Image
 from .finish import PLAIN, Finish
+from .numbers import MAX_FACTOR, MAX_INDEX, check_radiance, check_range
 
 
 def reflectance(ior: float) -> float:
@@ -35,9 +36,10 @@ class Material:
     finish: Finish = PLAIN
 
     def __post_init__(self):
-        numbers = [self.roughness, self.metallic, self.ior, *self.emission]
-        if not (np.isfinite(numbers).all() and self.ior > 0 and len(self.emission) == 3):
-            raise ValueError(f"A material needs finite numbers and an index of refraction above 0, not {self}.")
+        check_range("A material's roughness and metallic", (self.roughness, self.metallic), 0.0, 1.0)
+        check_range("A material's index of refraction", self.ior, 1e-6, 1e6)
+        check_radiance("A material's emission", self.emission)
+        check_range("A material's index", self.index, -MAX_INDEX, MAX_INDEX, is_whole=True)
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,8 +55,7 @@ class SurfaceTexture:
     is_cut_out: bool = False
 
     def __post_init__(self):
-        if len(self.factor) != 3 or not np.isfinite(self.factor).all():
-            raise ValueError(f"A texture's factor must be 3 finite numbers, not {self.factor!r}.")
+        check_radiance("A texture's factor", self.factor)
 
     @cached_property
     def brightest(self) -> float:
@@ -71,8 +72,7 @@ class NormalTexture:
     is_cut_out = False
 
     def __post_init__(self):
-        if not (np.isfinite(self.strength) and self.strength >= 0):
-            raise ValueError(f"A normal map's strength must be a finite number, 0 or more, not {self.strength}.")
+        check_range("A normal map's strength", self.strength, 0.0, MAX_FACTOR)
 
     @property
     def factor(self) -> tuple[float, float, float]:

@@ -12,7 +12,11 @@ from typing import Protocol
 
 import numpy as np
 
+from .numbers import MAX_LENGTH, MIN_LENGTH
 from .window import Windowed
+
+#: A panorama of a smaller angle would need faces of too many pixels.
+_LEAST_ANGLE = 1e-3
 
 
 class Projection(Protocol):
@@ -36,7 +40,7 @@ class Equirectangular:
     def __post_init__(self):
         for name, limit in (("longitude", math.pi), ("latitude", math.pi / 2)):
             low, high = getattr(self, name)
-            if not -limit - 1e-6 <= low < high <= limit + 1e-6:
+            if not (-limit - 1e-6 <= low and low + _LEAST_ANGLE <= high <= limit + 1e-6):
                 raise ValueError(
                     f"A panorama's {name} must rise between -{math.degrees(limit):g} and {math.degrees(limit):g} "
                     f"degrees, not go from {math.degrees(low):g} to {math.degrees(high):g}."
@@ -66,7 +70,7 @@ class EquidistantFisheye:
     field_of_view: float
 
     def __post_init__(self):
-        if not 0 < self.field_of_view <= 2 * math.pi + 1e-6:
+        if not _LEAST_ANGLE <= self.field_of_view <= 2 * math.pi + 1e-6:
             raise ValueError(f"A fisheye's field of view must be 0 to 360 degrees, not {self.field_of_view} radians.")
 
     def directions(self, u, v):
@@ -88,8 +92,11 @@ class EquisolidFisheye:
 
     def __post_init__(self):
         EquidistantFisheye(self.field_of_view)
-        if not (self.focal_length > 0 and min(self.sensor) > 0):
+        sizes = self.focal_length, *self.sensor
+        if not all(MIN_LENGTH < size < MAX_LENGTH for size in sizes):
             raise ValueError(f"A fisheye's lens and sensor must be above 0, not {self.focal_length}, {self.sensor}.")
+        if self.angles()[0] < _LEAST_ANGLE or self.angles()[1] < _LEAST_ANGLE:
+            raise ValueError(f"A fisheye's lens of {self.focal_length} is too long for its sensor, {self.sensor}.")
 
     def directions(self, u, v):
         x, y = (u - 0.5) * self.sensor[0], (v - 0.5) * self.sensor[1]
@@ -121,6 +128,9 @@ class Panorama(Windowed):
     near: float = 0.1
     far: float = 1000.0
     window: tuple[float, float, float, float] = (0.0, 1.0, 0.0, 1.0)
+
+    def __post_init__(self):
+        self._check()
 
     def directions(self, rows: slice, place=(0.5, 0.5)) -> np.ndarray:
         """(n, w, 3) float64 in the camera's space, for these rows of pixels, through a point in each pixel (0 to 1)."""

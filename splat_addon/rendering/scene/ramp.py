@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .numbers import MAX_RADIANCE, check_range
 from .texels import opaque_texels
 
 #: Weights of linear Rec. 709 (ITU-R BT.709).
@@ -28,8 +29,8 @@ class Ramp:
         colors = np.ascontiguousarray(self.colors, np.float32)
         if colors.ndim != 2 or colors.shape[1] != 3 or len(colors) < 2:
             raise ValueError(f"A ramp's colors must be (2 or more, 3), not {colors.shape}.")
-        if not (np.isfinite(colors).all() and (colors >= 0).all()):
-            raise ValueError("A ramp's colors must be finite and 0 or more.")
+        check_range("A ramp's colors", colors, 0.0, MAX_RADIANCE)
+        check_range("A ramp's weights of luminance", self.luminance, -1.0, 2.0)
         object.__setattr__(self, "colors", colors)
 
     @classmethod

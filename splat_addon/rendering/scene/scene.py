@@ -6,7 +6,6 @@ Plain values without Blender: `blender/export/scene.py` makes a `Scene` from a d
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import ClassVar
@@ -20,6 +19,7 @@ from .camera import Camera
 from .environment import Environment
 from .light import MAX_LIGHT_SETS, Light
 from .material import Material, NormalTexture, SurfaceTexture
+from .numbers import MAX_INDEX, MAX_LENGTH, MIN_LENGTH, check_lengths, check_radiance, check_range
 from .picture_sun import PictureSun
 from .polygons import Polygons
 from .table import CORNERS, FLATTEST, InstanceTable, make_table
@@ -62,17 +62,19 @@ class Placed:
     is_merged: ClassVar[bool] = False
 
     def __post_init__(self):
-        if not 0 <= self.light_set < MAX_LIGHT_SETS:
+        if self.light_set not in range(MAX_LIGHT_SETS):
             raise ValueError(f"An instance's light set must be 0 to {MAX_LIGHT_SETS - 1}, not {self.light_set}.")
         matrix = np.array(self.matrix_world, np.float64)
         if matrix.shape != (4, 4) or not np.isfinite(matrix).all():
             raise ValueError("An instance's matrix_world must be 4 x 4 finite numbers.")
+        check_lengths("The numbers of an instance's matrix_world", matrix)
+        check_range("An instance's index", self.index, -MAX_INDEX, MAX_INDEX, is_whole=True)
         matrix.flags.writeable = False
         object.__setattr__(self, "matrix_world", matrix)
         object.__setattr__(self, "materials", tuple(self.materials) or (Material(),))
         object.__setattr__(self, "textures", tuple(self.textures))
         for name in ("split_distance", "split_length"):
-            if (value := getattr(self, name)) is not None and not 0 < value < math.inf:
+            if (value := getattr(self, name)) is not None and not MIN_LENGTH <= value <= MAX_LENGTH:
                 raise ValueError(f"An instance's {name} must be finite and above 0, not {value}.")
         if None not in (self.split_distance, self.split_length):
             raise ValueError("An instance is split by a split_distance or by a split_length; leave one of them out.")
@@ -283,7 +285,5 @@ class Scene:
 
 
 def _radiance(name: str, given) -> tuple[float, ...]:
-    radiance = tuple(float(channel) for channel in given)
-    if len(radiance) != 3 or not np.isfinite(radiance).all():
-        raise ValueError(f"The {name}'s radiance must be 3 finite numbers, not {given!r}.")
-    return radiance
+    check_radiance(f"The {name}'s radiance", given)
+    return tuple(float(channel) for channel in given)

@@ -174,7 +174,7 @@ def test_what_a_world_s_picture_lacks_is_said_in_each_frame(add_picture, read_wo
     image.filepath_raw, image.file_format = str(tmp_path / "broken.exr"), "OPEN_EXR"
     image.save()
     first, second = read_world()[1], read_world()[1]
-    assert "The world's picture 'broken' has infinite or too large numbers; they count as 0" in first == second
+    assert "The image 'broken' has infinite or too large numbers; its pixels that count as 0: 1" in first == second
 
 
 @pytest.fixture

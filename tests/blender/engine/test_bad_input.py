@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 import pytest
 
+from splat_addon.blender.export.camera import rendered_part
 from splat_addon.blender.geometry.attributes import write_surfels
 from splat_addon.surfels import empty_surfels
 
@@ -51,6 +52,48 @@ def test_clip_distances_in_the_wrong_order_are_refused(scene, add_camera):
     add_camera(clip_start=10, clip_end=5)
     with pytest.raises(RuntimeError, match=r"0 < near < far, not near 10\.0, far 5\.0"):
         bpy.ops.render.render(write_still=True)
+
+
+@pytest.mark.parametrize("name", ["lens", "sensor_width", "shift_x", "clip_start", "clip_end"])
+def test_a_camera_with_a_number_that_is_none_is_refused_by_name(name, scene, add_camera):
+    add_camera(**{name: NAN})
+    with pytest.raises(RuntimeError, match=r"The camera 'camera' cannot be used: .*nan"):
+        bpy.ops.render.render(write_still=True)
+
+
+def test_a_border_that_is_no_place_is_refused(scene):
+    """Tiles read it; a render is refused by Blender."""
+    scene.render.use_border, scene.render.border_max_x = True, NAN
+    with pytest.raises(ValueError, match=r"The render border ends at .*nan.*; draw it again or switch it off"):
+        rendered_part(scene.render)
+
+
+def test_pixels_of_an_image_that_are_no_colours_are_counted_and_black(scene, add_camera, add_square, picture, said):
+    """If one channel is not finite, all of the pixel is 0, as in Cycles."""
+    add_camera(type="ORTHO", ortho_scale=1).location = (0.5, 0.5, 9)
+    image = bpy.data.images.new("holed", 2, 1, float_buffer=True)
+    image.pixels.foreach_set(np.float32((NAN, 1, 0, 1, 0.25, 0.5, 1, 1)))
+    material = bpy.data.materials.new("textured")
+    if bpy.app.version < (5, 0, 0):
+        material.use_nodes = True
+    tree = material.node_tree
+    node = tree.nodes.new("ShaderNodeTexImage")
+    node.image, node.interpolation = image, "Closest"
+    tree.links.new(node.outputs["Color"], tree.nodes["Principled BSDF"].inputs["Base Color"])
+    add_square().data.materials.append(material)
+    drawn = picture()
+    assert np.array_equal(drawn[16, 8], (0, 0, 0, 1)) and np.allclose(drawn[16, 24], (0.25, 0.5, 1, 1))
+    assert "The image 'holed' has infinite or too large numbers; its pixels that count as 0: 1" in said()
+
+
+def test_pixels_that_overflow_are_counted_and_black(good, scene, picture, said):
+    good.data.attributes["Col"].data[0].color = (3e38, 1, 0, 1)
+    scene.surfel_splatting.shading = "principled"
+    light = bpy.data.objects.new("glare", bpy.data.lights.new("glare", "SUN"))
+    light.data.energy = 1e20
+    scene.collection.objects.link(light)
+    assert np.array_equal(picture()[16, 16], (0, 0, 0, 1))
+    assert "pixels are black because their numbers are not finite; look for huge lights" in said()
 
 
 def test_a_camera_without_extent_is_refused(scene, add_camera):

@@ -85,7 +85,11 @@ def test_a_parallel_camera_is_sharp_and_says_so(scene, camera, discs, picture, s
     assert "Depth of field needs a perspective camera" in said()
 
 
-def test_a_focus_that_is_no_distance_is_an_error(camera, discs, picture):
-    camera(focus_distance=0)
-    with pytest.raises(RuntimeError, match="cannot focus at the distance 0"):
-        picture()
+@pytest.mark.parametrize("focus", [0, np.nan])
+def test_a_focus_that_is_no_distance_blurs_nothing_and_is_said(focus, scene, camera, discs, picture, said):
+    dof = camera(focus_distance=focus).data.dof
+    scene.surfel_splatting.samples = 2
+    drawn = picture()
+    assert f"A lens cannot focus at the distance {focus:.1f}" in said()
+    dof.use_dof = False
+    np.testing.assert_array_equal(picture(), drawn)

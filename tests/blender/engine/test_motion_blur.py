@@ -184,6 +184,16 @@ def test_the_frame_is_restored_after_a_failure(scene, flat_camera, add_surfels, 
     assert final_render._resources is None
 
 
+@pytest.mark.parametrize("shutter", [np.nan, np.inf])
+def test_a_shutter_that_is_no_time_blurs_nothing_and_is_said(shutter, scene, flat_camera, add_surfels, picture, said):
+    move(add_surfels([(0, 0, 0)], size=3.0))
+    scene.render.motion_blur_shutter = shutter
+    drawn = picture()
+    assert f"A shutter cannot be open for {scene.render.motion_blur_shutter:g} frames" in said()
+    scene.render.use_motion_blur = False
+    np.testing.assert_array_equal(picture(), drawn)
+
+
 def test_one_sample_is_sharp_and_says_so(scene, flat_camera, add_surfels, picture, said):
     move(add_surfels([(0, 0, 0)], size=3.0))
     scene.surfel_splatting.samples = 1

@@ -3,7 +3,7 @@
 
 This package words the problems that it expects: it raises ValueError or RuntimeError with a sentence. Whatever else is
 raised, by Python, numpy or Blender, is a fault of the extension, also a ValueError. A person reads that it is one, and
-finds the traceback on stderr. `doors` names the places where exceptions end.
+finds the traceback on stderr. `blender.doors` names the places where exceptions end.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import dis
 import sys
 import traceback
 
-_PACKAGE = __package__.rpartition(".")[0]
+_PACKAGE = __package__
 _RAISE = dis.opmap["RAISE_VARARGS"]
 
 #: Letters of a foreign message that are shown.

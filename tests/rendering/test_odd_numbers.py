@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A scene, camera or setting with a number that no picture can be made of is refused with a sentence."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+
+from splat_addon.faults import is_worded
+from splat_addon.images import Image
+from splat_addon.rendering import (
+    Camera,
+    Environment,
+    EquidistantFisheye,
+    Equirectangular,
+    EquisolidFisheye,
+    Finish,
+    Instance,
+    Lens,
+    Light,
+    Lines,
+    Matcap,
+    Material,
+    NormalTexture,
+    Panorama,
+    Ramp,
+    Scene,
+    Settings,
+    SurfaceTexture,
+)
+from splat_addon.surfels import empty_surfels
+
+PIXEL = Image(np.ones((1, 1, 4)))
+#: Each kind of thing with plain numbers, which are replaced one at a time.
+PLAIN = [
+    Camera(np.eye(4), (-1, 1, -1, 1), (8, 8)),
+    Camera(np.eye(4), (-1, 1, -1, 1), (8, 8), is_orthographic=True),
+    Panorama(np.eye(4), EquidistantFisheye(3.0), (8, 8)),
+    EquidistantFisheye(3.0),
+    Equirectangular(),
+    EquisolidFisheye(3.0, 10.0, (36.0, 24.0)),
+    Lens(0.1, 1.0),
+    *(Light(kind) for kind in ("sun", "point", "spot", "area")),
+    Material(),
+    Finish(),
+    SurfaceTexture(PIXEL),
+    NormalTexture(PIXEL),
+    PIXEL,
+    Environment(np.ones((2, 4, 3))),
+    Instance(empty_surfels()),
+    Instance(empty_surfels(), split_distance=1.0),
+    Instance(empty_surfels(), split_length=1.0),
+    Scene(background=(0.0, 0.0, 0.0)),
+    Settings(),
+    Lines(),
+    Ramp(np.ones((2, 3))),
+    Matcap(np.ones((2, 2, 3))),
+]
+#: No thing takes them in place of a number.
+NEVER = (math.nan, math.inf, -math.inf)
+OTHERS = (0, -1, 1e300, -1e300, 1e39, 1e-300, 0.5, 2.5)
+
+
+def with_odd(value, odd: float) -> Iterator:
+    """The value with one of its numbers replaced; nothing if it has none."""
+    if isinstance(value, np.ndarray) and value.dtype.kind == "f":
+        changed = value.astype(np.float64)
+        changed.flat[0] = odd
+        yield changed
+    elif isinstance(value, tuple):
+        for place, part in enumerate(value):
+            yield from ((*value[:place], changed, *value[place + 1 :]) for changed in with_odd(part, odd))
+    elif isinstance(value, int | float) and not isinstance(value, bool):
+        yield odd
+
+
+@pytest.mark.parametrize("plain", PLAIN, ids=lambda plain: type(plain).__name__)
+def test_every_odd_number_is_taken_or_refused_with_a_sentence(plain):
+    tried = 0
+    for field in fields(plain):
+        for odd in (*NEVER, *OTHERS) * field.init:
+            for value in with_odd(getattr(plain, field.name), odd):
+                tried += 1
+                try:
+                    with np.errstate(over="ignore"):
+                        replace(plain, **{field.name: value})
+                except Exception as error:
+                    assert is_worded(error), f"{field.name} {value}: {error!r}"
+                else:
+                    assert odd not in (*NEVER, 1e300, -1e300) or field.name == "rotation", (field.name, value)
+    assert tried >= len(NEVER)
