@@ -151,14 +151,16 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ModalWriting, ImportHelper, 
     def _tell_place(self, made, surfels):
         """Warn of a place so far out that Blender's own numbers are coarse beside the surfels."""
         step = float(np.spacing(np.abs(np.array(made.matrix_world.translation, np.float32)).max()))
-        if step > _COARSE * float(np.median(surfels.scales)):
-            why = said(
-                "Blender keeps places so far out in steps of {step:.3g}, also those of cameras and lights; this engine "
-                "draws and exports the surfels exactly, other engines up to {aside:.2g} aside",
-                step=step,
-                aside=float(np.linalg.norm(offset_of(made.data))),
-            )
-            self.report({"WARNING"}, why)
+        if not step > _COARSE * float(np.median(surfels.scales)):
+            return
+        why = said(
+            "Blender keeps places so far out in steps of {step:.3g}, also those of cameras and lights; this engine "
+            "draws and exports the surfels exactly",
+            step=step,
+        )
+        self.report({"WARNING"}, why)
+        if aside := float(np.linalg.norm(offset_of(made.data))):
+            self.report({"WARNING"}, said("Other engines show these surfels {aside:.2g} aside", aside=aside))
 
     def _sentence(self, error):
         return f"{self._name}: {file_sentence(error)}"

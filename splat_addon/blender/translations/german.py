@@ -888,11 +888,12 @@ GERMAN = {
     ),
     (
         "Blender keeps places so far out in steps of {step:.3g}, also those of cameras and lights; this engine draws "
-        "and exports the surfels exactly, other engines up to {aside:.2g} aside"
+        "and exports the surfels exactly"
     ): (
         "Blender merkt sich Orte so weit draußen in Schritten von {step:.3g}, auch die von Kameras und Lichtern; diese "
-        "Engine zeichnet und exportiert die Surfels genau, andere Engines bis zu {aside:.2g} daneben"
+        "Engine zeichnet und exportiert die Surfels genau"
     ),
+    "Other engines show these surfels {aside:.2g} aside": "Andere Engines zeigen diese Surfels {aside:.2g} daneben",
     "Float Colors": "Fließkommafarben",
     "What the file's colours mean if they are floats and the file does not say it": (
         "Was die Farben der Datei bedeuten, wenn sie Fließkommazahlen sind und die Datei es nicht sagt"
