@@ -16,7 +16,8 @@ import bpy
 import numpy as np
 from bpy.props import StringProperty
 
-from ...streaming import Stream
+from ...streaming import Stream, id_of
+from ..doors import unattended, with_handlers
 from ..ids import MESH_SETTINGS
 from ..registration import with_property
 from ..working_space import surfels_from_rec709
@@ -61,7 +62,8 @@ def keep_coarsest(mesh: bpy.types.Mesh, path: str, relative: str, is_own: bool) 
         fill(mesh, surfels_from_rec709(stream.at_most(KEPT)), stream.file.origin)
         settings = getattr(mesh, MESH_SETTINGS)
         settings.file = relative
-        settings.file_id, settings.file_blend = (stream.file.id, _blend_name()) if is_own else ("", "")
+        if is_own:
+            settings.file_id, settings.file_blend, settings.file_place = stream.file.id, _blend_name(), path
         return len(stream), stream.file.origin
     finally:
         stream.close()
@@ -87,7 +89,7 @@ class SurfelMeshSettings(bpy.types.PropertyGroup):
     """A mesh's settings: `mesh.surfel_splatting`.
 
     file_id: of what the mesh stored last, also after a conversion brought its surfels back. file_blend: the name of the
-    .blend in which that was.
+    .blend in which that was. file_place: the absolute path of the file then.
     """
 
     file: StringProperty(
@@ -102,6 +104,34 @@ class SurfelMeshSettings(bpy.types.PropertyGroup):
     )
     file_id: StringProperty(options={"HIDDEN"})
     file_blend: StringProperty(options={"HIDDEN"})
+    file_place: StringProperty(options={"HIDDEN"})
 
 
-register, unregister = with_property(bpy.types.Mesh, MESH_SETTINGS, SurfelMeshSettings)
+@unattended("Finding the files of surfels")
+def _find_again(*_) -> None:
+    """Name the files again that a .blend does not find because it was saved in another folder: Blender keeps only paths
+    of its own relative. A file is known by its id."""
+    for mesh in bpy.data.meshes:
+        settings = getattr(mesh, MESH_SETTINGS)
+        file_id = settings.file_id
+        if mesh.library or not (settings.file and file_id) or os.path.exists(bpy.path.abspath(settings.file)):
+            continue
+        if id_of(settings.file_place) == file_id:
+            settings.file = relative_path(settings.file_place)
+            settings.file_id = file_id
+
+
+_register_settings, _unregister_settings = with_property(bpy.types.Mesh, MESH_SETTINGS, SurfelMeshSettings)
+_register_handlers, _unregister_handlers = with_handlers(
+    (bpy.app.handlers.load_post, _find_again), (bpy.app.handlers.save_post, _find_again)
+)
+
+
+def register():
+    _register_settings()
+    _register_handlers()
+
+
+def unregister():
+    _unregister_handlers()
+    _unregister_settings()

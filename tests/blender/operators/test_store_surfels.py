@@ -126,6 +126,19 @@ def test_a_copy_reads_the_file_and_stores_in_another(way, ball, saved):
         assert stored(28) == first
 
 
+def test_a_blend_that_is_saved_in_another_folder_finds_the_file(ball, saved, tmp_path):
+    stored(16)
+    file_id = ball.data.surfel_splatting.file_id
+    (tmp_path / "new").mkdir()
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "new" / "scene.blend"), copy=True)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "new" / "other.blend"))
+    for name in ("other", "scene"):
+        settings = bpy.data.objects["Cube surfels"].data.surfel_splatting
+        assert (settings.file, settings.file_id) == ("//../Cube_surfels.surfelblocks", file_id)
+        bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "new" / f"{name}.blend"))
+    assert Streams().get(bpy.data.objects["Cube surfels"]).file.id == file_id
+
+
 def test_an_object_draws_its_coarsest_surfels_if_its_file_holds_others(ball, saved, opaque):
     stored(16)
     (path,) = saved.glob("*.surfelblocks")
