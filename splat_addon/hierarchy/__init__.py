@@ -5,11 +5,12 @@ Levels are merged from below over the cells of a grid (`clusters`, `merging`). E
 difference from the surfels it replaces (`bounds`), and ends at their clip lines (`merged_lines`). What lies around it
 makes it sharper, and its bounds larger at borders (`surroundings`). Runs of neighbours in a level are *blocks*, each
 with a box and a cone of normals (`blocks`), from which a view selects (`cuts`). When surfels move, the tree stays, and
-is fitted to them (`refitting`).
+is fitted to them (`refitting`). Surfels of extreme sizes or places never merge (`extremes`).
 """
 
 from .building import Hierarchy, Told, build_hierarchy
 from .cuts import Sight, Split, are_facing, cut_blocks, entries_of
+from .extremes import has_extremes
 from .refitting import refit_hierarchy
 
 __all__ = [
@@ -21,5 +22,6 @@ __all__ = [
     "build_hierarchy",
     "cut_blocks",
     "entries_of",
+    "has_extremes",
     "refit_hierarchy",
 ]

@@ -20,6 +20,7 @@ from .runs import Runs
 #: are theirs.
 BLOCK, BLOCK_OF_SURFELS = 8, 32
 
+_MOST = np.finfo(np.float32).max
 #: Entries per batch, few enough for temporaries to stay in the processor's cache.
 _PORTION = 1 << 14
 
@@ -159,4 +160,7 @@ def _own(entries: np.ndarray, runs: Runs, geometry: np.ndarray, errors: np.ndarr
     if nodes.max() >= 0:
         own = np.where(nodes[:, None] >= 0, errors[np.maximum(nodes, 0)], own)
     largest = np.maximum.reduceat(own, runs.starts, axis=0)
-    return runs.least(positions - radii).T, runs.largest(positions + radii).T, axes.T, angles, largest
+    # what is beyond float32 is at its end
+    with np.errstate(over="ignore"):
+        low, high = np.maximum(positions - radii, -_MOST), np.minimum(positions + radii, _MOST)
+    return runs.least(low).T, runs.largest(high).T, axes.T, angles, largest

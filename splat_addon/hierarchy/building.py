@@ -14,6 +14,7 @@ from ..large_surfels import SAMPLE_SIZE
 from ..surfels import Surfels, concatenate, empty_surfels
 from .blocks import Blocks, Level, depth_first, make_blocks
 from .clusters import clustered
+from .extremes import extreme
 from .families import families
 from .merging import as_surfels, merged
 from .nodes import PORTION, Leaves, Table
@@ -159,6 +160,8 @@ def merged_level(
 
 def _cells(surfels: Surfels) -> Iterator[float]:
     """The cell sizes of the levels, up to one cell that contains everything."""
+    never = extreme(Leaves(surfels))
+    surfels = surfels if never is None else surfels.take(~never)
     if not len(surfels):
         return
     low, high = surfels.local_bounds
@@ -174,11 +177,13 @@ def _cells(surfels: Surfels) -> Iterator[float]:
 def _families(current: Table | Leaves, cell: float) -> tuple[np.ndarray, Runs, np.ndarray] | None:
     """The rows that merge, in runs with one parent each, and the rows that wait for larger cells; None if too few
     merge."""
-    is_large = current.column("radii") > _LARGEST * cell
+    is_large, never = current.column("radii") > _LARGEST * cell, extreme(current)
+    if never is not None:
+        is_large |= never
     rows = np.flatnonzero(~is_large)
     if len(rows) < 2:
         return None
-    order, counts = clustered(current, rows, cell)
+    order, counts = clustered(current, rows, cell, has_extremes=never is not None)
     several = counts > 1
     is_merged = np.repeat(several, counts)
     if np.count_nonzero(is_merged) < _LEAST_MERGED * len(current):

@@ -149,8 +149,20 @@ class Leaves:
         return len(self.surfels)
 
     def column(self, name: str) -> np.ndarray:
-        """As `Table.column`, of radii and materials."""
-        return self.surfels.radius if name == "radii" else self.surfels.materials
+        """As `Table.column`, of positions, radii, areas, colours and materials."""
+        match name:
+            case "positions":
+                return self.surfels.positions.T
+            case "radii":
+                return self.surfels.radius
+            case "areas":
+                with np.errstate(over="ignore", under="ignore"):
+                    return self.surfels.scales[:, 0] * self.surfels.scales[:, 1]
+            case "colors":
+                return self.surfels.colors.T
+            case "materials":
+                return self.surfels.materials
+        raise KeyError(name)
 
     def take(self, rows: np.ndarray) -> Nodes:
         """Some surfels as nodes."""
@@ -159,7 +171,10 @@ class Leaves:
 
     def joined(self, parts: list[Table], rows: np.ndarray) -> Table:
         """Other tables, followed by rows of this one."""
-        return Table(parts[0].widths, np.concatenate([*(part.rows for part in parts), Table.of(self.take(rows)).rows]))
+        # areas of extreme sizes overflow, and are not used
+        with np.errstate(all="ignore"):
+            own = Table.of(self.take(rows))
+        return Table(parts[0].widths, np.concatenate([*(part.rows for part in parts), own.rows]))
 
     @cached_property
     def geometry(self) -> np.ndarray:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from splat_addon.hierarchy.blocks import ranges
-from splat_addon.streaming import BlockFile, WritingCancelled, write_blocks
+from splat_addon.streaming import BlockFile, WritingCancelled, check, write_blocks
 from splat_addon.streaming.layout import PAGE
 from splat_addon.surfels import Surfels, empty_surfels
 
@@ -135,3 +135,13 @@ def test_a_damaged_or_foreign_file_is_refused_with_a_sentence(damage, sentence, 
     path.write_bytes(damage(one_portion.read_bytes()))
     with pytest.raises(ValueError, match=sentence):
         BlockFile(path)
+
+
+def test_surfels_of_extreme_sizes_and_places_are_kept(tmp_path):
+    surfels = ball(2000)
+    positions, scales = surfels.positions.copy(), surfels.scales.copy()
+    positions[:3], positions[3:6], scales[6:9], scales[9:12] = 3e38, -3e38, 1e-45, 3e38
+    extreme = Surfels(**{**surfels.arrays(), "positions": positions, "scales": scales})
+    write_blocks(tmp_path / "a.surfelblocks", [extreme], portion=700)
+    assert check(tmp_path / "a.surfelblocks") == 2000
+    assert np.array_equal(sorted_rows(stored(tmp_path / "a.surfelblocks")), sorted_rows(extreme))

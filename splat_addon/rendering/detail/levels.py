@@ -11,7 +11,7 @@ from weakref import WeakKeyDictionary, WeakSet
 
 import numpy as np
 
-from ...hierarchy import Hierarchy, Sight, Split, Told, build_hierarchy, refit_hierarchy
+from ...hierarchy import Hierarchy, Sight, Split, Told, build_hierarchy, has_extremes, refit_hierarchy
 from ...large_surfels import SAMPLE_SIZE
 from ...surfels import Surfels
 from ..scene import Instance, Scene
@@ -60,7 +60,7 @@ def hierarchy_of(surfels: Surfels) -> Hierarchy:
 def make_hierarchy(surfels: Surfels, before: Hierarchy | None, told: Told | None = None) -> Hierarchy:
     """A hierarchy fitted from the one that the surfels had before they moved, or built if there is none or it fits
     badly. told: as in `build_hierarchy`."""
-    if before is not None:
+    if before is not None and not has_extremes(surfels):
         fitted = refit_hierarchy(before, surfels)
         if fitted.looseness(surfels) <= _WORN * fitted.built_looseness:
             return fitted

@@ -12,7 +12,7 @@ import pytest
 from splat_addon.blender import preferences
 from splat_addon.blender.engine import final_render
 from splat_addon.blender.geometry import surfel_files
-from splat_addon.streaming import write_blocks
+from splat_addon.streaming import Stream, write_blocks
 
 
 @pytest.fixture
@@ -57,6 +57,49 @@ def test_without_its_file_the_coarsest_are_drawn_with_a_warning(stored, picture,
     (note,) = final_render.last_frame_stats["notes"]
     assert "sheet is drawn with its coarsest surfels only" in note and "No such file" in note
     assert shown[16, 16, 3] > 0.5 and final_render.last_frame_stats["splats"] == len(stored.data.vertices)
+
+
+def damage(path):
+    """Change what is in the middle of a file, where no roots are."""
+    data = bytearray(path.read_bytes())
+    data[100_000:200_000] = bytes(100_000)
+    path.write_bytes(data)
+
+
+def test_what_is_damaged_in_a_file_is_drawn_coarser_with_a_warning(stored, picture, tmp_path):
+    bpy.ops.object.surfels_to_file()
+    damage(tmp_path / "sheet.surfelblocks")
+    shown = picture()
+    assert final_render.last_frame_stats["notes"] == [
+        "sheet is coarser than it should be. sheet.surfelblocks is damaged: some of its blocks have wrong checksums or "
+        "numbers; copy or store it again."
+    ]
+    assert shown[13:19, 13:19, 3].min() > 0.5 and 1000 < final_render.last_frame_stats["splats"] < 6400
+
+
+def test_a_file_that_is_cut_off_while_it_is_read_is_drawn_coarsely_with_a_warning(
+    stored, picture, tmp_path, monkeypatch
+):
+    bpy.ops.object.surfels_to_file()
+    path = tmp_path / "sheet.surfelblocks"
+
+    def begin(stream):
+        path.write_bytes(b"")
+        original(stream)
+
+    original = Stream.begin_frame
+    monkeypatch.setattr(Stream, "begin_frame", begin)
+    shown = picture()
+    (note,) = final_render.last_frame_stats["notes"]
+    assert "sheet.surfelblocks was changed while it was read" in note and shown[16, 16, 3] > 0.5
+
+
+def test_a_background_render_stops_where_a_file_is_damaged(scene, stored, tmp_path):
+    bpy.ops.object.surfels_to_file()
+    damage(tmp_path / "sheet.surfelblocks")
+    scene.surfel_splatting.broken_objects = "STOP"
+    with pytest.raises(RuntimeError, match=r"sheet is coarser than it should be\. sheet\.surfelblocks is damaged"):
+        bpy.ops.render.render()
 
 
 def test_a_background_render_stops_where_the_file_is_missing(scene, stored, tmp_path):
