@@ -11,8 +11,9 @@ import numpy as np
 from .columns import FLOAT_COLORS, POSITION, Columns
 from .gaussian_forms import with_usual_names
 from .gaussian_ply import gaussians, is_gaussians
-from .gaussians import DEFAULT_FLATNESS, Gaussians
-from .ply_file import read_vertices
+from .gaussians import DEFAULT_FLATNESS, VIEW_DEPENDENT, Gaussians
+from .packed_gaussians import CHUNK, HARMONICS, is_packed, unpacked
+from .ply_file import read_element, read_vertices
 from .point_ply import Points, points
 from .surfel_ply import StoredSurfels, is_surfels, stored_surfels
 
@@ -35,6 +36,12 @@ def read_contents(
     if float_colors not in FLOAT_COLORS:
         raise ValueError(f"float_colors must be one of {', '.join(FLOAT_COLORS)}, not {float_colors!r}.")
     read, comments, others = read_vertices(path)
+    said = []
+    if is_packed(read):
+        read = unpacked(read, read_element(path, CHUNK))
+        said = [f"Took {len(read['x']):,} Gaussians from a compressed file, which rounds places, sizes and colours"]
+        said += [VIEW_DEPENDENT] * (HARMONICS in others)
+        others = {name: count for name, count in others.items() if name not in (CHUNK, HARMONICS)}
     columns = Columns(with_usual_names(read))
     if is_gaussians(columns):
         contents = gaussians(columns, comments, flatness, float_colors)
@@ -42,7 +49,7 @@ def read_contents(
         contents = stored_surfels(columns, comments, float_colors)
     else:
         contents = points(columns, float_colors)
-    said = (*contents.said, *_coarse_steps(columns), *columns.passed_over(), *_left_out(others))
+    said = (*contents.said, *said, *_coarse_steps(columns), *columns.passed_over(), *_left_out(others))
     return replace(contents, said=said)
 
 

@@ -23,6 +23,8 @@ SIGMA = 0.5
 #: Maximum thickness of a Gaussian relative to its middle sigma to count as a surfel.
 DEFAULT_FLATNESS = 0.25
 
+VIEW_DEPENDENT = "Skipped the part of the colours that changes with the view, which surfels do not have"
+
 #: thin axis -> quaternion that, multiplied from the right, makes it the third axis: identity, or a third of a turn
 #: about (1, 1, 1).
 _TURNS = {0: (0.5, 0.5, 0.5, 0.5), 1: (-0.5, 0.5, 0.5, 0.5), 2: (1.0, 0.0, 0.0, 0.0)}
@@ -54,7 +56,7 @@ class Gaussians:
         }
         said = [f"Skipped {count:,} of {self.total:,} Gaussians {why}" for why, count in skipped.items() if count]
         if self.view_dependent:
-            said.append("Skipped the part of the colours that changes with the view, which surfels do not have")
+            said.append(VIEW_DEPENDENT)
         return [*said, *self.said]
 
 

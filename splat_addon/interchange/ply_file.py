@@ -45,6 +45,21 @@ def read_vertices(path: str | os.PathLike) -> Vertices:
     return next(vertex_portions(path))
 
 
+def read_element(path: str | os.PathLike, name: str) -> dict[str, np.ndarray]:
+    """The columns of another element of numbers; none if the file has no such element. Raises as `read_vertices`."""
+    size = os.path.getsize(path)
+    with open(path, "rb") as stream:
+        header = read_header(stream)
+        element = next(
+            (each for each in header.elements if each.name == name and None not in each.types.values()), None
+        )
+        if element is None or not element.types:
+            return {}
+        if header.byte_order is None:
+            return read_text(stream, size, header, element)
+        return next(_read_binary(stream, size, header, element, None))
+
+
 def vertex_count(path: str | os.PathLike) -> int:
     """The number of vertices that the header declares. Raises as `read_vertices`."""
     with open(path, "rb") as stream:

@@ -10,9 +10,6 @@ import numpy as np
 from .columns import NORMAL, POSITION, has, matrix
 from .gaussian_forms import color_and_opacity, lacks_of_gaussians
 
-#: A property of SuperSplat's compressed files.
-_PACKED = "packed_position"
-
 
 @dataclass(frozen=True, eq=False)
 class Points:
@@ -33,11 +30,6 @@ class Points:
 def points(columns: dict[str, np.ndarray], floats: str = "DISPLAY") -> Points:
     """The points in columns of a PLY file. floats: as in `display_color`. Raises ValueError where x, y or z is
     missing."""
-    if _PACKED in columns:
-        raise ValueError(
-            "The PLY file is compressed (SuperSplat's packed properties), which cannot be read; export an uncompressed "
-            "PLY from SuperSplat."
-        )
     missing = [name for name in POSITION if name not in columns]
     if missing:
         there = " ".join(list(columns)[:12])

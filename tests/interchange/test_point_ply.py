@@ -78,13 +78,6 @@ def test_what_is_passed_over_or_left_out_is_said_with_its_number(ply):
     )
 
 
-def test_supersplats_compressed_layout_is_named(ply):
-    names = ("position", "rotation", "scale", "color")
-    head = ["format binary_little_endian 1.0", "element vertex 1", *(f"property uint packed_{n}" for n in names)]
-    with pytest.raises(ValueError, match=r"is compressed .*export an uncompressed PLY"):
-        read_contents(ply(head, bytes(16)))
-
-
 @pytest.mark.parametrize("kind", ["uchar", "ushort", "short", "uint", "int"])
 def test_white_is_255_in_integers_of_any_type(ply, kind):
     head = ["format ascii 1.0", "element vertex 2", *(f"property float {n}" for n in "xyz")]
