@@ -49,7 +49,8 @@ class Pages:
 
     def have(self, first: np.ndarray, last: np.ndarray) -> np.ndarray:
         """(n,) bool: whether all rows of each run from first to last, at most a page long, are here."""
-        return (self._slots[first // PAGE] >= 0) & (self._slots[(last - 1) // PAGE] >= 0)
+        are_here = (self._slots[first // PAGE] >= 0) & (self._slots[(last - 1) // PAGE] >= 0)
+        return are_here & ~self.are_lost(first, last)
 
     def are_lost(self, first: np.ndarray, last: np.ndarray) -> np.ndarray:
         """(n,) bool: whether some row of each run could not be read."""
@@ -60,10 +61,8 @@ class Pages:
         self._are_lost[:] = False
 
     def lose(self, first: np.ndarray, last: np.ndarray) -> None:
-        """Drop the pages of these runs, as if they could not be read."""
-        pages = np.unique(self._of_rows(first, last))
-        self._pages[self._slots[pages]] = -1
-        self._slots[pages], self._are_lost[pages] = -1, True
+        """Count the pages of these runs, which are here, as those that cannot be read. Roots in them stay."""
+        self._are_lost[self._of_rows(first, last)] = True
 
     def begin(self) -> None:
         """Begin a view: pages used from now on stay until the next begins."""

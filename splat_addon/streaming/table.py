@@ -26,30 +26,32 @@ class Table:
         self._file = file
         page_bytes = PAGE * sum(columns * kind.itemsize for columns, kind in COLUMNS.values())
         self._most, self._taken = max(most_bytes // page_bytes, _FEWEST), 0
-        self._are_lost = np.zeros(-(-file.size // PAGE), bool)
-        self.forget()
+        self._are_here, self._are_lost = np.zeros((2, -(-file.size // PAGE)), bool)
+        self.blocks = self._empty()
+        roots = np.arange(-(-file.roots // PAGE))
+        self._read(roots)
+        if self._are_lost.any():
+            raise ValueError(file.fault())
+        #: pages of the roots, which stay when the others are forgotten
+        self._stay = len(roots)
 
-    def forget(self) -> None:
-        """Give the memory back."""
+    def _empty(self) -> Blocks:
+        """Blocks whose memory is taken from the system only as pages are filled."""
         size = self._file.size
-        # memory is taken from the system only as pages are filled
         columns = {n: np.empty((size, width) if width > 1 else size, kind) for n, (width, kind) in COLUMNS.items()}
-        self.blocks = Blocks(**columns, roots=np.array(self._file.roots))
-        self._are_here, self._taken = np.zeros_like(self._are_lost), 0
-        self._are_lost[:] = False
-        pages = np.arange(-(-self._file.roots // PAGE))
-        self._read(pages)
-        if self._are_lost[pages].any():
-            raise ValueError(self._file.fault())
-
-    def try_again(self) -> None:
-        """Forget what could not be read."""
-        self._are_lost[:] = False
+        return Blocks(**columns, roots=np.array(self._file.roots))
 
     def begin(self) -> None:
         """Begin a view: what earlier ones looked at is forgotten if it is too much."""
         if self._taken > self._most:
-            self.forget()
+            before, self.blocks = self.blocks, self._empty()
+            for name in COLUMNS:
+                getattr(self.blocks, name)[: self._stay * PAGE] = getattr(before, name)[: self._stay * PAGE]
+            self._are_here[self._stay :], self._taken = False, self._stay
+
+    def try_again(self) -> None:
+        """Forget what could not be read."""
+        self._are_lost[:] = False
 
     def load(self, first: np.ndarray, last: np.ndarray) -> np.ndarray:
         """(n,) bool: whether all blocks of each run from first to last, at most a page long, are here; they are read

@@ -196,6 +196,20 @@ def test_a_root_that_is_no_surfel_is_refused(edited):
         Stream(edited(lambda parts: parts.arrays["rows"]["rotations"].__setitem__(-1, np.nan)), 0)
 
 
+def test_rows_beside_the_roots_that_are_no_surfels_do_not_take_these_along(edited, sound):
+    """In a page that the roots have rows in."""
+    parts = EditedBlocks(sound)
+    first, roots = parts.arrays["first"], parts.directory["roots"]
+    merged = parts.arrays["last_child"] > parts.arrays["first_child"]
+    rows = first[roots:][np.isin(first[roots:] // PAGE, first[:roots] // PAGE) & merged[roots:]]
+    stream = Stream(edited(lambda parts: parts.arrays["rows"]["normals"].__setitem__(rows, np.nan)), 0)
+    for _ in range(2):
+        stream.begin_frame()
+        with pytest.raises(Unreadable, match=r"a.surfelblocks is damaged"):
+            stream.seen(sight((0, 0, 9), 9.0))
+    assert len(stream.seen(sight((0, 0, 1e5))).surfels) == len(stream.coarsest)
+
+
 def test_rows_that_are_no_surfels_are_drawn_coarser(edited):
     stream = Stream(edited(lambda parts: parts.arrays["rows"]["rotations"].__setitem__(50, np.nan)), 1 << 30)
     with pytest.raises(Unreadable, match=r"a.surfelblocks is damaged") as error:

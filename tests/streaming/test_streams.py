@@ -213,3 +213,14 @@ def test_the_pages_used_least_recently_make_room(many_portions):
     pages.fetch(new)
     assert there(kept[0]) and there(new[0]) and not there(kept[1])
     assert all(map(there, kept[2:]))
+
+
+def test_the_table_is_forgotten_where_it_is_too_much_and_read_again(many_portions, monkeypatch):
+    monkeypatch.setattr("splat_addon.streaming.table._FEWEST", 1)
+    stream = Stream(many_portions, 0)
+    assert stream.file.size > 2 * PAGE
+    for _ in range(2):
+        assert len(stream.at_most(10**9)) == len(stream)
+        assert stream.table._taken > 2
+        stream.table.begin()
+        assert stream.table._taken == 1
