@@ -127,7 +127,7 @@ def _consumed(parts: list[Path], results: list[Path]) -> Iterator[None]:
     parts_before, results_before = _times(parts), _times(results)
     yield
     if _times(results) == results_before:
-        oldest = min(results_before.values())
+        oldest = min(results_before.values(), default=0)
         if younger := [part for part, time in parts_before.items() if time > oldest]:
             raise ValueError(
                 f"{results[0]} was there already and is older than {younger[0]}, so it lacks that; delete one of the "

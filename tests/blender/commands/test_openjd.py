@@ -105,7 +105,7 @@ def test_frames_are_the_single_machines_bit_by_bit(animation, lines, follow, pix
     chunks = lines("frames", ChunkSize=2, **about)
     assert len(chunks) == 2 + 1
     assert killed(chunks[0])
-    assert [path.name[:16] for path in tmp_path.iterdir() if "farm" in path.name] == [".farm_0001.exr.u"]
+    assert {path.name[:16] for path in tmp_path.iterdir() if "farm" in path.name} == {".farm_0001.exr.u"}
     for line in (chunks[1], chunks[0], chunks[2]):
         follow(line)
     bpy.context.scene.render.filepath = str(tmp_path / "whole_")
