@@ -3,9 +3,10 @@
 
     python3 scripts/test.py [--quick] [--bpy VERSION] [--blender PATH [--gpu-backend NAME]] [PYTEST ARGUMENTS]
 
-Group "plain" draws on the standalone device; group "blender" draws inside Blender's wheel. With --blender the second
-group runs inside a Blender program, in several processes; of the first group only the pictures that it compares
-with are drawn. Otherwise pytest-xdist runs as many processes as there are cores; -n 0 runs one.
+Group "plain" draws on the standalone device; group "blender" draws inside Blender's wheel what that device's own file
+could draw otherwise. With --blender the second group runs inside a Blender program, in several processes, and draws
+everything; of the first group only the pictures that it compares with are drawn. Otherwise pytest-xdist runs as many
+processes as there are cores; -n 0 runs one.
 """
 
 import argparse
@@ -84,7 +85,7 @@ def main(arguments: list) -> int:
     all."""
     options, rest = parse(arguments)
     paths, pytest_arguments = split_arguments([*(QUICK if options.quick else ()), *rest])
-    groups = paths_by_group(paths, only_pictures=bool(options.blender))
+    groups = paths_by_group(paths, is_program=bool(options.blender))
     python = environment.make("test", options.bpy).python
     variables = program.prepare(options.blender, python) if options.blender else {}
     with tempfile.TemporaryDirectory() as folder:

@@ -12,13 +12,25 @@ PLAIN, BLENDER = "plain", "blender"
 #: Folders that only Blender can run; tests of a window need a screen and run only if named.
 ONLY_IN_BLENDER = ("tests/blender", "tests/extension")
 ONLY_IN_A_WINDOW = ("tests/window",)
-#: Folders whose tests draw on the device that they are given.
+#: Folders whose tests draw on the device that they are given. A Blender program draws them all, with its own driver.
 ON_ANY_DEVICE = ("tests/rendering", "tests/extremes")
 #: Tests that save pictures of the standalone device, which are compared with Blender's.
 LEAVES_PICTURES = (
-    "tests/rendering/test_agreement.py",
-    "tests/rendering/test_identity.py",
-    "tests/rendering/test_outputs.py",
+    "tests/rendering/test_agreement.py::test_picture_is_the_same_on_every_device",
+    "tests/rendering/test_identity.py::test_they_are_the_same_on_every_device",
+    "tests/rendering/test_outputs.py::test_they_are_the_same_on_every_device",
+)
+#: What Blender's wheel draws of these folders. Its device has the driver that the standalone device has, and gives it
+#: the same shaders: only what the device's own file does can differ.
+ON_BLENDERS_DEVICE = (
+    *LEAVES_PICTURES,
+    "tests/rendering/test_device.py",
+    "tests/rendering/test_device_draws.py",
+    "tests/rendering/test_loading.py::test_the_whole_picture_is_that_of_a_render_bit_by_bit",
+    "tests/rendering/test_multisampling.py::test_what_cannot_be_multisampled_is_refused",
+    "tests/rendering/test_multisampling.py::test_blenders_gpu_module_has_no_multisampled_textures",
+    "tests/rendering/test_refinement.py::test_at_rest_slices_change_nothing_until_the_picture_is_complete",
+    "tests/rendering/test_refinement.py::test_a_picture_given_up_at_a_pause_leaves_the_device_alone",
 )
 
 #: Test files of one process of a Blender program, see by_process.
@@ -60,23 +72,20 @@ def split_arguments(arguments: list[str]) -> tuple[list[str], list[str]]:
     return paths, others
 
 
-def paths_by_group(paths: list[str], only_pictures: bool = False) -> dict[str, list[str]]:
+def paths_by_group(paths: list[str], is_program: bool = False) -> dict[str, list[str]]:
     """group -> the arguments that name its tests; all tests if no path is given.
 
-    only_pictures: skip the plain group's other tests, which do not concern the tested Blender.
+    is_program: whether the second group runs in a Blender program. It then draws all that any device can draw, and the
+        plain group has only the pictures that it is compared with: its other tests do not concern the program.
     """
     if not paths:
-        plain = list(LEAVES_PICTURES) if only_pictures else ["tests", *_ignored()]
-        return {PLAIN: plain, BLENDER: [*ON_ANY_DEVICE, *_existing(ONLY_IN_BLENDER)]}
+        return paths_by_group(["tests"], is_program)
+    drawn = ON_ANY_DEVICE if is_program else ON_BLENDERS_DEVICE
     groups = {PLAIN: [], BLENDER: []}
     for path in paths:
-        if _is_within(path, (*ONLY_IN_BLENDER, *ON_ANY_DEVICE)):
-            groups[BLENDER].append(path)
-        else:
-            groups[BLENDER] += [f for f in (*ON_ANY_DEVICE, *_existing(ONLY_IN_BLENDER)) if _is_within(f, (path,))]
-        if only_pictures:
-            is_one = _is_within(path, LEAVES_PICTURES)
-            groups[PLAIN] += [path] if is_one else [f for f in LEAVES_PICTURES if _is_within(f, (path,))]
+        groups[BLENDER] += _common(path, (*drawn, *_existing(ONLY_IN_BLENDER)))
+        if is_program:
+            groups[PLAIN] += _common(path, LEAVES_PICTURES)
         elif not _is_within(path, ONLY_IN_BLENDER):
             groups[PLAIN].append(path)
     if groups[PLAIN] and not any(_is_within(path, ONLY_IN_A_WINDOW) for path in paths):
@@ -105,9 +114,26 @@ def _existing(folders: tuple[str, ...]) -> list[str]:
     return [folder for folder in folders if (ROOT / folder).is_dir()]
 
 
-def _is_within(path: str, folders: tuple[str, ...]) -> bool:
-    inner = _file(path)
-    return any(folder == inner or folder in inner.parents for folder in map(_file, folders))
+def _common(path: str, listed: tuple[str, ...]) -> list[str]:
+    """What a path and a list of paths have in common: the path itself, or those of the list that it contains."""
+    if _is_within(path, listed):
+        return [path]
+    return [one for one in listed if _is_within(one, (path,))]
+
+
+def _is_within(path: str, outer: tuple[str, ...]) -> bool:
+    """Whether a path is one of these, or in one of these folders, files or tests (a name with or without a case)."""
+    return any(_file(one) in (_file(path), *_file(path).parents) and _has(_test(one), _test(path)) for one in outer)
+
+
+def _has(outer: str, inner: str) -> bool:
+    """Whether the test `inner` of a file is `outer`, or a case of it; without a name `outer` is all tests."""
+    return not outer or inner == outer or inner.startswith(f"{outer}[")
+
+
+def _test(argument: str) -> str:
+    """The name of the test in a path, or nothing."""
+    return argument.partition("::")[2]
 
 
 def _file(argument: str) -> Path:

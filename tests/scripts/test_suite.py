@@ -11,6 +11,7 @@ from testing.groups import (
     BLENDER,
     FILES,
     LEAVES_PICTURES,
+    ON_BLENDERS_DEVICE,
     PLAIN,
     QUICK,
     by_process,
@@ -35,7 +36,18 @@ def named(group):
 
 def test_without_a_path_both_groups_run():
     groups = paths_by_group([])
-    assert named(groups[PLAIN]) == ["tests"] and "tests/rendering" in groups[BLENDER]
+    assert named(groups[PLAIN]) == ["tests"]
+    assert groups[BLENDER] == [*ON_BLENDERS_DEVICE, "tests/blender", "tests/extension"]
+
+
+def test_a_program_draws_what_any_device_can():
+    assert paths_by_group([], is_program=True)[BLENDER][:2] == ["tests/rendering", "tests/extremes"]
+
+
+def test_what_the_wheel_draws_exists():
+    for path in (*ON_BLENDERS_DEVICE, *LEAVES_PICTURES):
+        file, _, name = path.partition("::")
+        assert f"def {name}(" in (ROOT / file).read_text(encoding="utf-8") or not name, path
 
 
 def test_the_plain_group_leaves_blenders_folders_out():
@@ -46,17 +58,20 @@ def test_the_plain_group_leaves_blenders_folders_out():
 def test_a_program_is_compared_with_the_plain_groups_pictures_only():
     files = (Path(__file__).resolve().parents[1] / "rendering").rglob("test_*.py")
     comparing = sorted(f.name for f in files if "on_every_device(" in f.read_text(encoding="utf-8"))
-    plain = named(paths_by_group([], only_pictures=True)[PLAIN])
-    assert sorted(Path(path).name for path in plain) == comparing and comparing
+    plain = named(paths_by_group([], is_program=True)[PLAIN])
+    assert sorted(Path(path.partition("::")[0]).name for path in plain) == comparing and comparing
 
 
 @pytest.mark.parametrize(
     ("path", "groups"),
     [
         ("tests/sampling", {PLAIN}),
-        ("tests/rendering", {PLAIN, BLENDER}),
-        ("tests/extremes", {PLAIN, BLENDER}),
-        ("tests/rendering/test_agreement.py::test_x", {PLAIN, BLENDER}),
+        ("tests/extremes", {PLAIN}),
+        ("tests/rendering/test_shadows.py", {PLAIN}),
+        ("tests/rendering/test_agreement.py::test_picture_is_the_exact_one", {PLAIN}),
+        (ON_BLENDERS_DEVICE[0], {PLAIN, BLENDER}),
+        (f"{ON_BLENDERS_DEVICE[0]}[sphere-quad-options0]", {PLAIN, BLENDER}),
+        ("tests/rendering/test_device.py::test_renderers_share_their_programs", {PLAIN, BLENDER}),
         ("tests/blender", {BLENDER}),
         ("tests/extension/test_installed.py", {BLENDER}),
     ],
@@ -66,23 +81,32 @@ def test_a_path_runs_in_the_groups_it_belongs_to(path, groups):
     assert {group for group in chosen if path in chosen[group]} == groups
 
 
+@pytest.mark.parametrize("path", ["tests/rendering", "tests/rendering/test_agreement.py"])
+def test_of_a_folder_or_file_blenders_wheel_draws_what_is_listed(path):
+    groups = paths_by_group([path])
+    assert named(groups[PLAIN]) == [path]
+    assert groups[BLENDER] == [one for one in ON_BLENDERS_DEVICE if one.startswith(path)] != []
+
+
 @pytest.mark.parametrize(
     ("path", "plain"),
     [
         ("tests/rendering", set(LEAVES_PICTURES)),
-        ("tests/rendering/test_agreement.py::test_it", {"tests/rendering/test_agreement.py::test_it"}),
+        ("tests/rendering/test_agreement.py", {LEAVES_PICTURES[0]}),
+        (f"{LEAVES_PICTURES[0]}[case]", {f"{LEAVES_PICTURES[0]}[case]"}),
+        ("tests/rendering/test_agreement.py::test_picture_is_the_exact_one", set()),
         ("tests/blender", set()),
         ("tests/extremes", set()),
     ],
 )
 def test_of_the_plain_group_a_program_needs_only_the_pictures(path, plain):
-    groups = paths_by_group([path], only_pictures=True)
+    groups = paths_by_group([path], is_program=True)
     assert set(named(groups[PLAIN])) == plain and groups[BLENDER] == [path]
 
 
 def test_the_whole_folder_runs_in_both_groups():
     groups = paths_by_group(["tests"])
-    assert named(groups[PLAIN]) == ["tests"] and "tests/rendering" in groups[BLENDER]
+    assert named(groups[PLAIN]) == ["tests"] and {*ON_BLENDERS_DEVICE, "tests/blender"} < set(groups[BLENDER])
 
 
 def test_a_test_of_the_window_runs_only_where_it_is_named():
