@@ -15,11 +15,7 @@ ONLY_IN_A_WINDOW = ("tests/window",)
 #: Folders whose tests draw on the device that they are given. A Blender program draws them all, with its own driver.
 ON_ANY_DEVICE = ("tests/rendering", "tests/extremes")
 #: Tests that save pictures of the standalone device, which are compared with Blender's.
-LEAVES_PICTURES = (
-    "tests/rendering/test_agreement.py::test_picture_is_the_same_on_every_device",
-    "tests/rendering/test_identity.py::test_they_are_the_same_on_every_device",
-    "tests/rendering/test_outputs.py::test_they_are_the_same_on_every_device",
-)
+LEAVES_PICTURES = ("tests/rendering/test_agreement.py::test_picture_is_the_same_on_every_device",)
 #: What Blender's wheel draws of these folders. Its device has the driver that the standalone device has, and gives it
 #: the same shaders: only what the device's own file does can differ.
 ON_BLENDERS_DEVICE = (
@@ -51,7 +47,6 @@ QUICK = (
     "tests/sampling/test_adaptive.py",
     "tests/sampling/points",
     "tests/rendering/test_agreement.py",
-    "tests/rendering/test_outputs.py",
     "tests/rendering/test_plan_table.py",
     "tests/blender/operators",
     "tests/blender/engine/test_background.py",

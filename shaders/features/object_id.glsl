@@ -32,11 +32,6 @@ void object_id_add() {
   polygon_identity = vec2(number, depth_at);
 }
 
-#part depth_bounds.frag
-void object_id_write(ivec2 texel, inout float own) {
-  identity = texelFetch(row_identity, ivec2(texel.x, ROWS * texel.y), 0).xy;
-}
-
 #part screen_space.frag, edge_ids
 // Write only the splat's number where nothing is visible.
 void object_id_keep(inout Candidate c) {

@@ -176,7 +176,7 @@ def cases():
 
     agreement.SIZE = random_pictures.SIZE
     makers = agreement.SCENES | agreement.HYBRID | agreement.TEXTURED | agreement.BLURRED
-    makers = makers | agreement.TRANSPARENT | agreement.ALL_AROUND
+    makers = makers | agreement.TRANSPARENT | agreement.ALL_AROUND | getattr(agreement, "SPECIAL", {})
     for name, method, options in agreement.CASES:
         settings = Settings(method=method, **{"samples": 1, **options}, shadow_resolution=128)
         named = (value if isinstance(value, str) else key for key, value in options.items())

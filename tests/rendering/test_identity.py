@@ -280,18 +280,3 @@ def test_shares_of_one_key_are_added_up():
     keys, shares = added_up(np.array([5, 3, 5], np.uint64), np.array([1.0, 2, 4]))
     assert keys.tolist() == [3, 5] and shares.tolist() == [2, 5]
     assert len(added_up(np.zeros(0, np.uint64), np.zeros(0))[0]) == 0
-
-
-@pytest.mark.parametrize("method", METHODS)
-def test_they_are_the_same_on_every_device(method, render, on_both_devices):
-    def draw():
-        frame = render(three(), CAMERA, settings(method=method))
-        indices = {name: getattr(frame, name) for name in ("object_index", "material_index")}
-        return {**indices, "ranks": frame.cryptomatte.ranks(4)[..., 1]}
-
-    def hold(here, standalone):
-        for name, values in here.items():
-            different = np.abs(values - standalone[name]).reshape(SIZE[0] * SIZE[1], -1).max(axis=1) > 1e-4
-            assert np.count_nonzero(different) <= (9 if name == "ranks" else 1), name
-
-    on_both_devices(draw, hold)

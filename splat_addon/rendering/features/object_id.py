@@ -76,8 +76,6 @@ def parts(planning, p):
         yield Part("object_id", writes=(IDENTITY,), varyings=_VARYINGS)
     if p.host == "polygons.frag" and _polygons_apart(planning):
         yield Part("object_id", writes=(POLYGON_IDENTITY,), varyings=_VARYINGS)
-    if p.host == "depth_bounds.frag" and p.kind == "opaque" and planning.find(silhouettes.have_rows):
-        yield Part("object_id", reads=(ROW_IDENTITY,), writes=(IDENTITY,))
     if p.host == "peel.frag":
         yield Part("object_id", reads=(LAYER_IDENTITY,), updates=(IDENTITY,))
 

@@ -22,7 +22,7 @@ from .graph import Pass
 from .programs import composed
 
 #: variants of passes that have vertex shaders of their own
-_VERTEX = {"polygons": "polygon_visibility.vert"}
+VERTEX = {"polygons": "polygon_visibility.vert"}
 
 
 def main(arguments: list[str] | None = None) -> None:
@@ -46,10 +46,10 @@ def _shown(made: FramePlan, p: Pass, variants: list[str]) -> str:
     there = {part.only for part in p.parts} - {"", *made.variants}
     if missing := set(variants) - there:
         raise SystemExit(f"{p.name} has no variant {min(missing)}; it has {', '.join(sorted(there)) or 'none'}.")
-    vertex = next((_VERTEX[v] for v in variants if v in _VERTEX), p.host.replace(".frag", ".vert"))
+    vertex = next((VERTEX[v] for v in variants if v in VERTEX), p.host.replace(".frag", ".vert"))
     if not (FOLDER / "hosts" / f"{vertex}.glsl").exists():
         vertex = "fullscreen.vert"
-    texts = composed(made, p, vertex, *(variants or there - set(_VERTEX)), origins=True)
+    texts = composed(made, p, vertex, *(variants or there - set(VERTEX)), origins=True)
     heads = (f"==== {p.name} ({p.kind}): {host}\n" for host in (vertex, p.host))
     return "\n".join(head + text for head, text in zip(heads, texts, strict=True))
 
