@@ -98,7 +98,11 @@ def _claimed_error(target: Path) -> ClaimedError:
 @contextmanager
 def _locked(target: Path) -> Iterator[None]:
     path = target.with_name(mark(target))
-    taken = _taken(path)
+    try:
+        taken = _taken(path)
+    except OSError as error:
+        error.filename = str(target)  # that of the lock means nothing to anybody
+        raise
     if taken is None:
         raise _claimed_error(target)
     stream, is_locked = taken

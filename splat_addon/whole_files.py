@@ -80,11 +80,12 @@ def _compare(contents: bytes, file: Path) -> None:
 
 @contextmanager
 def _naming(target: Path) -> Iterator[None]:
-    """Let an error that names no file name this one: that of a full disk does not."""
+    """Let an error name this file that names none, as that of a full disk, or a hidden one."""
     try:
         yield
     except OSError as error:
-        if error.errno is not None and error.filename is None:
+        is_hidden = error.filename is None or mark(target) in os.path.basename(os.fspath(error.filename))
+        if error.errno is not None and is_hidden:
             error.filename = str(target)
         raise
 

@@ -105,6 +105,11 @@ def test_a_device_is_written_to_directly():
     assert Path("/dev/full").is_char_device()
 
 
+def test_a_folder_that_is_missing_is_an_error_of_the_file(tmp_path):
+    with pytest.raises(FileNotFoundError, match=r"No such file or directory: '.*[/\\\\]a'"):
+        write_whole(tmp_path / "missing" / "a", b"some")
+
+
 @pytest.mark.parametrize("step", ["fsync", "replace"])
 def test_an_error_of_the_disk_names_the_file_and_changes_nothing(step, tmp_path, monkeypatch):
     write_whole(tmp_path / "a", b"before")
