@@ -332,7 +332,7 @@ class Renderer:
             stats["instances"] += len(view.placed) + len(view.polygons)
             stats["instances_outside"] += view.outside
             stats["instances_degenerate"] = view.degenerate
-            for p in context.with_levels(view.placed):
+            for p in context.with_cuts(view.placed):
                 context.drawn_count(p)  # chooses them
                 yield Pause()
             coarse = sum(kind.count * context.stored(kind.placed).coarse for kind in view.placed.table.kinds)

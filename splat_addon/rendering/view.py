@@ -58,6 +58,7 @@ class Items:
         are skipped. overlaps: (n,) of polygons, how far behind them splats still count, view units.
     split_distances: (n,) of polygons the farthest distance, of splats the least of their centres, view units; 0: no
         limit.
+    step: the level of detail at which all of them are drawn whole, of `detail.steps`; None: each as its cut.
     setback: minimum distance by which a visibility pass moves them back, beside `View.least_offset` and in its unit.
     """
 
@@ -68,6 +69,7 @@ class Items:
     overlaps: np.ndarray
     split_distances: np.ndarray
     setback: float = 0.0
+    step: int | None = None
 
     def __len__(self) -> int:
         return len(self.table)

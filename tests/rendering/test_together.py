@@ -6,10 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import trimesh
 
+from splat_addon.hierarchy import build_hierarchy
 from splat_addon.rendering import Camera, Light, Renderer, Scene, Settings, look_at, make_polygons, plan
 from splat_addon.rendering.culling.backs import show_backs
-from splat_addon.rendering.plan import batches
+from splat_addon.rendering.detail import steps
+from splat_addon.rendering.plan.batches import batches
 from splat_addon.rendering.scene import Instance, Material, PolygonInstance
 from splat_addon.rendering.view import build_view
 from splat_addon.sampling import TriangleMesh, sample_mesh
@@ -93,7 +96,7 @@ def test_pictures_are_those_of_instances_drawn_one_by_one(case, shapes, on_devic
     scene, settings = field(shapes, **fields), Settings(outputs=outputs, shadow_resolution=128, **chosen)
     alone, calls_alone = drawn(scene, settings, on_device, monkeypatch)
     assert not plan(scene, CAMERA, settings).has("TOGETHER")
-    monkeypatch.setattr(batches, "LEAST_TOGETHER", 2)
+    monkeypatch.setattr(steps, "LEAST_TOGETHER", 2)
     together, calls = drawn(scene, settings, on_device, monkeypatch)
     assert plan(scene, CAMERA, settings).has("TOGETHER") and calls < 0.6 * calls_alone
     for name in outputs:
@@ -124,7 +127,7 @@ def test_lights_of_sets_light_their_own_instances(shapes, on_device, monkeypatch
     sets = {kind: tuple(replace(i, light_set=i.index // 4 % 2) for i in getattr(lit, kind)) for kind in shapes}
     settings = Settings(outputs=("color",), shadow_resolution=0)
     alone, _ = drawn(replace(lit, **sets), settings, on_device, monkeypatch)
-    monkeypatch.setattr(batches, "LEAST_TOGETHER", 2)
+    monkeypatch.setattr(steps, "LEAST_TOGETHER", 2)
     together, _ = drawn(replace(lit, **sets), settings, on_device, monkeypatch)
     np.testing.assert_allclose(together.color, alone.color, atol=1e-5)
     assert np.abs(together.color - drawn(scene, settings, on_device, monkeypatch)[0].color).max() > 0.1
@@ -133,9 +136,46 @@ def test_lights_of_sets_light_their_own_instances(shapes, on_device, monkeypatch
 def test_only_many_small_instances_of_one_kind_are_drawn_together(shapes):
     items = build_view(field(shapes, 80).table, CAMERA, 0.5).placed
     triangles = items.table.triangles.copy()
-    made = batches.batches(items, triangles)
+    made = batches(items, triangles, np.full(len(items), -1))
     assert [len(one) for one in made] == [20, 20] and made[0].table.kinds[0].placed.materials == (RED,)
-    triangles[items.table.of_kinds(lambda placed: placed.materials == (RED,))] = batches.MOST_TRIANGLES + 1
-    alone = batches.batches(items, triangles)
+    triangles[items.table.of_kinds(lambda placed: placed.materials == (RED,))] = steps.MOST_TRIANGLES + 1
+    alone = batches(items, triangles, np.full(len(items), -1))
     assert sorted(len(one) for one in alone) == [1] * 20 + [20]
     assert sorted(number for one in alone for number in one.table.numbers) == items.table.numbers.tolist()
+
+
+def test_each_instance_is_drawn_as_the_level_that_its_size_allows(on_device):
+    """Near ones are drawn whole, far ones as few merged surfels, and the picture hardly changes."""
+    round_one = sample_mesh(ball(), resolution=24)
+    rows = [np.eye(4) for _ in range(40)]
+    for number, matrix in enumerate(rows):
+        matrix[:3, 3] = 4 * (number % 4) - 6, 1.4 ** (number // 4) * 4, 0
+    sun = Light("sun", energy=3, direction=(0.4, 0.6, -1), casts_shadow=True)
+    scene = Scene(tuple(Instance(round_one, matrix) for matrix in rows), (sun,), (0.1,) * 3)
+    camera = Camera.perspective(look_at((0, -6, 3), (0, 8, 0)), 0.9, (48, 36))
+
+    def job(device):
+        renderer = Renderer(device)
+        return [renderer.render(scene, camera, Settings(detail_tolerance=tolerance)) for tolerance in (0.0, 0.5)]
+
+    every, some = on_device(job)
+    assert some.stats["plan"].has("LEVELS") and some.stats["splats_drawn"] < 0.1 * every.stats["splats_drawn"]
+    assert np.abs(some.color - every.color).mean() < 0.004
+    np.testing.assert_allclose(some.coverage.mean(), every.coverage.mean(), rtol=0.02)
+
+
+def ball() -> TriangleMesh:
+    made = trimesh.creation.icosphere(2, 1.0)
+    return TriangleMesh(made.vertices, made.faces)
+
+
+def test_steps_are_the_levels_of_a_hierarchy():
+    surfels = sample_mesh(ball(), resolution=24)
+    levels = build_hierarchy(surfels)
+    places = np.arange(len(surfels) + len(levels))[::-1]
+    made = steps.make_steps(levels, places, (slice(0, 10),))
+    assert made.counts[0] == len(surfels) and (np.diff(made.counts) < 0).all() and made.counts[-1] < 10
+    assert made.errors[0].tolist() == [0, 0] and (np.diff(made.errors, axis=0) >= 0).all()
+    assert sorted(made.numbers[: made.last[0]]) == sorted(places[: len(surfels)])
+    for first, clipped, last in zip(made.first, made.clipped, made.last, strict=True):
+        assert (made.numbers[first:clipped] < 10).all() and (made.numbers[clipped:last] >= 10).all()

@@ -18,6 +18,7 @@ from ..scene import Instance, Scene
 from ..scene.camera import Camera
 from ..scene.table import InstanceTable
 from .stand_in import STAND_INS
+from .steps import may_step
 
 #: For fewer surfels than this a cut saves less than it costs.
 LEAST_SURFELS = 4096
@@ -104,8 +105,19 @@ def was_drawn(scene: Scene) -> None:
 
 def has_levels(instance: Instance) -> bool:
     """Whether an instance may be drawn as merged surfels: it needs many surfels, not merged already."""
-    is_excluded = instance.is_cut or instance.surfels in STAND_INS
-    return len(instance.surfels) >= LEAST_SURFELS and not is_excluded
+    return len(instance.surfels) >= LEAST_SURFELS and not _is_excluded(instance)
+
+
+def _is_excluded(instance: Instance) -> bool:
+    return instance.is_cut or instance.surfels in STAND_INS
+
+
+def may_merge(instance: Instance, count: int) -> bool:
+    """Whether instances of a kind, so many in the scene, may be drawn as merged surfels: also where each has few, if
+    many are drawn together."""
+    if not may_step(instance, count):
+        return has_levels(instance)
+    return count * len(instance.surfels) >= LEAST_SURFELS and not _is_excluded(instance)
 
 
 def is_worth_preparing(instance: Instance) -> bool:
@@ -127,7 +139,10 @@ def merging(
     found = []
     if not tolerance:
         return frozenset()
-    table = scene.table.taken(scene.table.of_kinds(lambda i: isinstance(i, Instance) and has_levels(i)))
+    kinds = {
+        id(placed) for placed, count in scene.table.kinds if isinstance(placed, Instance) and may_merge(placed, count)
+    }
+    table = scene.table.taken(scene.table.of_kinds(lambda placed: id(placed) in kinds))
     for shape in dict.fromkeys(table.shape_of.tolist()):
         surfels, instances = table.shapes[shape], table.taken(table.shape_of == shape)
         spared = _spared(surfels, instances, camera, tolerance)

@@ -52,15 +52,24 @@ def draw_splats(tile: TileContext, p: Pass, target, items: Items, vertex, *varia
     """
     programs = Programs(tile, p, vertex, *variants)
     for batch in tile.batches(items):
-        if len(batch) == 1:
+        if len(batch) == 1 and batch.step is None:
             yield from draw_parts(tile, p, target, tile.in_parts(batch.item(0)), programs, viewport)
             continue
-        surfels = batch.item(0).instance.surfels
-        clipped, count = surfels.clipped_count, len(surfels)
-        for more, first, end in (((), clipped, count), (("clipped",), 0, clipped)):
-            if first < end:
+        own, first, clipped, last = _whole(tile, batch)
+        for more, which in ((own, range(clipped, last)), ((*own, "clipped"), range(first, clipped))):
+            if which:
                 program = yield from programs.of("together", *more)
-                yield from _draw_together(tile, p, target, batch, program, range(first, end), viewport)
+                yield from _draw_together(tile, p, target, batch, program, which, viewport)
+
+
+def _whole(tile: TileContext, batch: Items) -> tuple[tuple[str, ...], int, int, int]:
+    """What is drawn of each instance: variants of programs, and where its splats begin, clipped ones end, and all
+    end."""
+    surfels = batch.item(0).instance.surfels
+    if not batch.step:
+        return (), 0, surfels.clipped_count, len(surfels)
+    steps = tile.steps(batch.item(0).instance)
+    return ("cut",), *(int(ends[batch.step]) for ends in (steps.first, steps.clipped, steps.last))
 
 
 def draw_parts(

@@ -110,7 +110,7 @@ def front_to_back(tile, p: Pass, splats: Items, viewport=None) -> Iterator[Items
     if p.each is None:
         yield splats
         return
-    large = [BlocksFrontToBack(tile, placed) for placed in tile.with_levels(splats) if _is_large(tile, placed)]
+    large = [BlocksFrontToBack(tile, placed) for placed in tile.with_cuts(splats) if _is_large(tile, placed)]
     for each in large:
         each.show_next(_samples(tile))
     yield from _objects_front_to_back(tile, p, splats, viewport)

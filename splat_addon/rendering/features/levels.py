@@ -16,7 +16,14 @@ from . import lit_splats
 from .drawing import SPLAT_HOSTS
 
 CONSTANTS = {"NUMBERS_PER_ROW": NUMBERS_PER_ROW}
-DRAWN = {"drawn_splats": lambda tile, placed: tile.cuts(placed)[placed.part].numbers}
+
+
+def _drawn(tile, placed):
+    is_whole_level = placed.items.step is not None
+    return tile.step_numbers(placed.instance) if is_whole_level else tile.cuts(placed)[placed.part].numbers
+
+
+DRAWN = {"drawn_splats": _drawn}
 
 
 def merging(planning) -> frozenset:

@@ -3,12 +3,13 @@
 
 from __future__ import annotations
 
-from ..plan import batches
+from ..detail import steps
+from ..plan.batches import INSTANCES_PER_ROW
 from ..plan.graph import Part
 from ..plan.uniforms import TEXELS_PER_INSTANCE
 from .drawing import SPLAT_HOSTS
 
-CONSTANTS = {"INSTANCES_PER_ROW": batches.INSTANCES_PER_ROW, "TEXELS_PER_INSTANCE": TEXELS_PER_INSTANCE}
+CONSTANTS = {"INSTANCES_PER_ROW": INSTANCES_PER_ROW, "TEXELS_PER_INSTANCE": TEXELS_PER_INSTANCE}
 DRAWN = {"instances": lambda tile, placed: tile.instance_table(placed.items)}
 
 
@@ -25,7 +26,7 @@ def passes(planning):
 
 
 def is_present(planning) -> bool:
-    return planning.find(_most) >= batches.LEAST_TOGETHER
+    return planning.find(_most) >= steps.LEAST_TOGETHER
 
 
 def parts(planning, p):

@@ -3,36 +3,39 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
+from ..detail import steps as detail
 from ..view import Items
 from .uniforms import TEXELS_PER_INSTANCE, instance_values
 
-#: Fewer instances are drawn one by one, because a vertex that looks its instance up takes longer.
-LEAST_TOGETHER = 8
-
-#: Instances with more triangles than this are drawn one by one: a call for each is little beside them.
-MOST_TRIANGLES = 1 << 13
+#: More levels than any hierarchy has.
+_MOST_STEPS = 64
 
 #: Instances in a row of the texture that holds their values.
 INSTANCES_PER_ROW = 1024
 
 
-def batches(items: Items, triangles: np.ndarray) -> list[Items]:
+def batches(items: Items, triangles: np.ndarray, steps: np.ndarray) -> list[Items]:
     """The items in the order of their first ones, in groups of one kind that are drawn together, or of one item.
 
-    triangles: (n,) that are drawn of each, alike for one kind; 0 for those that are drawn by themselves.
+    triangles: (n,) that are drawn of each, alike for one kind; 0 for those that are drawn by themselves. steps: (n,)
+    levels of detail at which they are drawn whole, which only those at one level are together; -1 for none.
     """
-    if len(items) < LEAST_TOGETHER:
+    if len(items) < detail.LEAST_TOGETHER and (steps < 0).all():
         return [items] if len(items) == 1 else [items.taken(np.array([row])) for row in range(len(items))]
-    _, first, kind, counts = np.unique(items.table.kind_of, True, True, True)
+    _, first, group, counts = np.unique(items.table.kind_of * _MOST_STEPS + steps, True, True, True)
     each = triangles[first]
-    are_together = ((counts >= LEAST_TOGETHER) & (each <= MOST_TRIANGLES) & (each > 0))[kind]
-    begins = np.flatnonzero(~are_together | (first[kind] == np.arange(len(items))))
-    return [
-        items.taken(np.flatnonzero(kind == kind[row]) if are_together[row] else np.array([row]))
-        for row in begins.tolist()
-    ]
+    is_one = (counts >= detail.LEAST_TOGETHER) & (each <= detail.MOST_TRIANGLES) & (each > 0) | (steps[first] >= 0)
+    are_together = is_one[group]
+    begins = np.flatnonzero(~are_together | (first[group] == np.arange(len(items))))
+    made = []
+    for row in begins.tolist():
+        own = items.taken(np.flatnonzero(group == group[row]) if are_together[row] else np.array([row]))
+        made.append(replace(own, step=int(steps[row])) if steps[row] >= 0 else own)
+    return made
 
 
 def instance_texels(items: Items) -> np.ndarray:

@@ -12,6 +12,7 @@ import numpy as np
 
 from ...hierarchy import Hierarchy, Sight, cut_blocks, entries_of
 from ..detail.levels import is_worth_preparing, sight
+from ..detail.steps import Steps, chosen_steps, make_steps, may_step
 from ..device.interface import Pipeline, Target
 from ..device.interface import Texture as DeviceTexture
 from ..features import ARRIVES, DRAWN, DRAWS, INPUTS, VALUES
@@ -88,12 +89,43 @@ class TileContext:
         """(n,) bool: the objects of the scene that passes found to be behind all that is seen."""
         return np.zeros(len(self.scene.table), bool)
 
-    def with_levels(self, items: Items) -> list[DrawItem]:
-        """Those that have levels of detail."""
+    def with_cuts(self, items: Items) -> list[DrawItem]:
+        """Those that have levels of detail, of which each draws a cut of its own."""
         if not self.plan.facts.get("levels"):
             return []
-        rows = np.flatnonzero(items.table.of_kinds(lambda placed: self.levels(placed) is not None))
+        with_levels = items.table.of_kinds(lambda placed: self.levels(placed) is not None)
+        rows = np.flatnonzero(with_levels & (self.steps_of(items) < 0))
         return [items.item(row) for row in rows.tolist()]
+
+    def steps_of(self, items: Items) -> np.ndarray:
+        """(n,) the level of detail at which each instance is drawn whole; -1 if it has a cut of its own, or no
+        levels."""
+        found = np.full(len(items), -1)
+        if not self.plan.facts.get("levels"):
+            return found
+        for kind in self.scene.table.kinds:
+            placed = kind.placed
+            if not may_step(placed, kind.count) or self.levels(placed) is None:
+                continue
+            rows = np.flatnonzero(items.table.of_kinds(lambda other, placed=placed: other is placed))
+            is_depth_only = self.is_depth_only and not placed.is_transparent
+            steps, tolerance = self.steps(placed), self.settings.detail_tolerance
+            found[rows] = chosen_steps(steps, items.taken(rows), self.camera, tolerance, is_depth_only)
+        return found
+
+    def steps(self, instance: Instance) -> Steps:
+        """The levels at which an instance may be drawn whole."""
+        levels, places = self.levels(instance), self.stored(instance).places
+        return self.resources.cuts.kept(
+            (levels, "steps"), lambda: make_steps(levels, places, clipped_places(instance.surfels, levels))
+        )
+
+    def step_numbers(self, instance: Instance) -> DeviceTexture:
+        """The texture of the indices of what those levels draw."""
+        levels = self.levels(instance)
+        return self.resources.cuts.kept(
+            (levels, "numbers"), lambda: self.resources.cuts.texture(self.steps(instance).numbers)
+        )
 
     def textures(self, p: Pass, program: Pipeline, placed: DrawItem | None = None) -> list[DeviceTexture]:
         """The textures that a program samples. placed: the object being drawn."""
@@ -134,7 +166,7 @@ class TileContext:
         if items not in self._batches:
             # a cut is its instance's own
             are_whole = items.table.of_kinds(lambda placed: self.levels(placed) is None)
-            self._batches[items] = batches(items, items.table.triangles * are_whole)
+            self._batches[items] = batches(items, items.table.triangles * are_whole, self.steps_of(items))
         return self._batches[items]
 
     @cached_property
@@ -217,11 +249,12 @@ class TileContext:
 
     def drawn_counts(self, items: Items) -> np.ndarray:
         """(n,) the number of splats of each instance that this view draws."""
-        with_levels = self.with_levels(items)
-        if not with_levels:
-            return items.table.counts
-        counts = items.table.counts.copy()
-        for placed in with_levels:
+        counts, steps = items.table.counts.copy(), self.steps_of(items)
+        for kind in items.table.kinds if (steps >= 0).any() else ():
+            rows = np.flatnonzero(items.table.of_kinds(lambda other, own=kind.placed: other is own) & (steps >= 0))
+            if len(rows):
+                counts[rows] = self.steps(kind.placed).counts[steps[rows]]
+        for placed in self.with_cuts(items):
             counts[placed.row] = self.drawn_count(placed)
         return counts
 

@@ -83,11 +83,15 @@ class Cuts:
 
     def _part(self, numbers: np.ndarray, clipped: int) -> Cut:
         """The cut of one part. clipped: how many of the numbers, the first, are of clipped ones."""
+        return Cut(len(numbers), clipped, self.texture(numbers))
+
+    def texture(self, numbers: np.ndarray) -> Texture:
+        """A texture of indices."""
         rows = max(-(-len(numbers) // NUMBERS_PER_ROW), 1)
         texels = np.zeros((rows, NUMBERS_PER_ROW, 1), np.float32)
         texels.reshape(-1)[: len(numbers)] = numbers
         self.uploads += 1
-        return Cut(len(numbers), clipped, self._device.texture((NUMBERS_PER_ROW, rows), "R32F", texels))
+        return self._device.texture((NUMBERS_PER_ROW, rows), "R32F", texels)
 
     def clear(self) -> None:
         self._kept.clear()

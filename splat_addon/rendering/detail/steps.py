@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Levels of detail of many instances: each is drawn as one whole level of its hierarchy, chosen for all at once.
+
+A cut fits a view of one object best, but it is of that object alone. Of an instance that is far away for its size, all
+parts need the same level, and instances at one level are drawn together.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ...hierarchy import Hierarchy
+from ..scene import Instance
+from ..scene.camera import Camera
+from ..view import Items
+
+#: Fewer instances are drawn one by one, because a vertex that looks its instance up takes longer.
+LEAST_TOGETHER = 8
+
+#: Instances with more triangles than this are drawn one by one: a call for each is little beside them.
+MOST_TRIANGLES = 1 << 13
+
+
+class Steps(NamedTuple):
+    """The levels of a hierarchy that have few enough entries, the finest first.
+
+    numbers: storage indices of what they draw, one level after the other, in each of which clipped ones come first.
+    first, clipped, last: (k,) of each level, where it begins, its clipped ones end, and it ends. errors: (k, 2) the
+    largest of each, object units, increasing; without those of what it shows in the second column.
+    """
+
+    numbers: np.ndarray
+    first: np.ndarray
+    clipped: np.ndarray
+    last: np.ndarray
+    errors: np.ndarray
+
+    @property
+    def counts(self) -> np.ndarray:
+        """(k,) what each level draws."""
+        return self.last - self.first
+
+
+def make_steps(levels: Hierarchy, places: np.ndarray, clipped: tuple[slice, ...]) -> Steps:
+    """places: storage index of each surfel and then each node. clipped: where clipped ones are in the storage."""
+    numbers, errors, clipped_counts = [], [], []
+    for entries in _levels(levels):
+        if len(entries) > MOST_TRIANGLES:
+            continue
+        own = places[entries]
+        are_clipped = np.logical_or.reduce([(own >= part.start) & (own < part.stop) for part in clipped])
+        numbers.append(np.concatenate([own[are_clipped], own[~are_clipped]]))
+        clipped_counts.append(np.count_nonzero(are_clipped))
+        nodes = levels.errors[entries[entries >= levels.surfels] - levels.surfels]
+        errors.append((nodes.max(initial=0.0), nodes[:, :2].max(initial=0.0)))
+    sizes = np.array([len(own) for own in numbers], int)
+    first = np.cumsum(sizes) - sizes
+    every = np.concatenate([np.zeros(0, np.int32), *numbers])
+    rising = np.maximum.accumulate(np.reshape(errors, (-1, 2)), axis=0)
+    return Steps(every, first, first + np.array(clipped_counts, int), first + sizes, rising)
+
+
+def _levels(levels: Hierarchy):
+    """The entries of each level: those of successive entries of the next level follow one another."""
+    start, size, counts = 0, levels.surfels, levels.counts
+    while size:
+        yield levels.entries[start : start + size]
+        start, below = start + size, size
+        size = int(np.searchsorted(np.cumsum(counts), below)) + 1 if len(counts) else 0
+        counts = counts[size:]
+
+
+def may_step(instance: Instance, count: int) -> bool:
+    """Whether the instances of a kind, so many in the scene, are drawn level by level; what is split near the camera is
+    not."""
+    return count >= LEAST_TOGETHER and not instance.is_split
+
+
+def chosen_steps(steps: Steps, items: Items, camera: Camera, tolerance: float, is_depth_only: bool) -> np.ndarray:
+    """(n,) the coarsest level of each that is off by at most so many pixels at its nearest point; -1 if none is."""
+    pixels = camera.pixels_per_unit() * items.table.stretches[:, 0]
+    if not camera.is_orthographic:
+        # merged surfels must not touch the near plane, where methods may treat splats differently
+        pixels = np.where(items.nearest > camera.near, pixels / np.maximum(items.nearest, camera.near), np.inf)
+    with np.errstate(divide="ignore"):
+        return np.searchsorted(steps.errors[:, int(is_depth_only)], tolerance / pixels, "right") - 1
