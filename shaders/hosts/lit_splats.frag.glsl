@@ -4,6 +4,7 @@
 
 vec3 material;
 vec3 emission;
+#include "lib/instances/{instances}.glsl"
 #include "hosts/splat.glsl"
 #include "shading_models/{shading}.glsl"
 

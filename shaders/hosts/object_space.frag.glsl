@@ -2,7 +2,7 @@
 // Summary: adds weighted attributes to their sums; the depth test keeps visible splats. Hooks: `keep` discards, `color`
 //          changes the colour.
 
-#include "instances/{instances}.glsl"
+#include "lib/instances/{instances}.glsl"
 #include "depth_formats/{depth_format}.glsl"
 #include "hosts/gbuffer.glsl"
 #include "methods/{method}.glsl"

@@ -1,7 +1,7 @@
 // References: Botsch et al. 2005, section 4 (deferred shading: attributes are blended, not colours).
 // Summary: for methods that draw quads in space: the corner and attributes of each splat.
 
-#include "instances/{instances}.glsl"
+#include "lib/instances/{instances}.glsl"
 #include "lib/nowhere.glsl"
 #include "hosts/splat.glsl"
 #include "hosts/splat_varyings.glsl"

@@ -2,7 +2,7 @@
 // Summary: the attributes of the nearest splat alone; shading divides by its weight. Hooks: `keep` discards, `add`
 //          fills further targets.
 
-#include "instances/{instances}.glsl"
+#include "lib/instances/{instances}.glsl"
 #include "hosts/gbuffer.glsl"
 #include "methods/{method}.glsl"
 

@@ -2,7 +2,7 @@
 // Summary: for methods in which the nearest splat wins: a triangle around each sprite, parallel to the picture, at the
 //          depth of the splat's centre; backs are moved behind the fronts in their place.
 
-#include "instances/{instances}.glsl"
+#include "lib/instances/{instances}.glsl"
 #include "lib/nowhere.glsl"
 #include "hosts/splat.glsl"
 #include "hosts/splat_varyings.glsl"

@@ -3,7 +3,7 @@
 //          behind them, and at least by what the depth can resolve. The fragment shader is that of splats. Hook:
 //          `moved` is called with the moved corner.
 
-#include "instances/{instances}.glsl"
+#include "lib/instances/{instances}.glsl"
 #include "depth_formats/{depth_format}.glsl"
 #include "lib/nowhere.glsl"
 #include "hosts/corner.glsl"

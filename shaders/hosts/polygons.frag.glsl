@@ -2,7 +2,7 @@
 // Summary: the attributes of the nearest polygon. Hooks: `keep` discards, `color` changes the colour, `bend` the
 //          normal, `add` fills targets.
 
-#include "instances/{instances}.glsl"
+#include "lib/instances/{instances}.glsl"
 #include "depth_formats/{depth_format}.glsl"
 
 #parts

@@ -2,7 +2,7 @@
 // Summary: corners of polygons and their attributes, with the normal on the visible side. Of the two sides of a card,
 //          which are in the same place, the one that faces the viewer is seen. Hook: `plane` of the triangle.
 
-#include "instances/{instances}.glsl"
+#include "lib/instances/{instances}.glsl"
 #include "lib/nowhere.glsl"
 #include "hosts/corner.glsl"
 

@@ -4,7 +4,7 @@
 //          its own. Hooks: `weigh` for splats evaluated in space, `bound` changes how far is visible, `keep` discards,
 //          `color` changes the colour, `add` fills targets.
 
-#include "instances/{instances}.glsl"
+#include "lib/instances/{instances}.glsl"
 #include "hosts/gbuffer.glsl"
 #include "lib/place.glsl"
 #include "methods/{method}.glsl"

@@ -4,7 +4,7 @@
 //          if the method has replaced axes, `reach` for splats that nearer ones may not hide, `cull` for splats that
 //          need not be drawn.
 
-#include "instances/{instances}.glsl"
+#include "lib/instances/{instances}.glsl"
 #include "lib/nowhere.glsl"
 #include "hosts/splat.glsl"
 #include "hosts/splat_varyings.glsl"

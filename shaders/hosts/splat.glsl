@@ -18,7 +18,7 @@ struct Splat {
   float material;     // index
   float opacity;
   bool is_back;
-  bool is_hidden;  // not drawn: the back of a solid, or fully transparent
+  bool is_hidden;  // not drawn: the back of a solid, fully transparent, or none of the object's
 };
 
 // Unit geometric normal on the visible side, view space.
@@ -53,7 +53,7 @@ Splat fetch_splat(int index) {
   splat.normal = normalize(mat3(instance.normal_matrix) * stored.normal) * (is_inward != cosine < 0.0 ? -1.0 : 1.0);
   splat.opacity = clamp(stored.color.a, 0.0, 1.0);
   splat.is_back = cosine < 0.0;
-  splat.is_hidden = cosine < 0.0 && instance.hides_backs > 0.5;
+  splat.is_hidden = (cosine < 0.0 && instance.hides_backs > 0.5) || is_beyond_instance();
   #hook hide(splat)
   #hook resize(splat, index)
   return splat;

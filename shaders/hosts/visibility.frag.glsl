@@ -2,7 +2,7 @@
 // Summary: writes depth, except outside the ellipse and in front of the near plane (which only the offset moved into
 //          view). Hooks: `keep` discards, `add` fills targets.
 
-#include "instances/{instances}.glsl"
+#include "lib/instances/{instances}.glsl"
 #include "depth_formats/{depth_format}.glsl"
 
 #parts

@@ -4,7 +4,7 @@
 //          least by what the depth can resolve, or rounding would let a splat hide itself. Hooks: `blend` reduces the
 //          depth, `move` uses another length, `shape` changes the shape from the exact ellipse.
 
-#include "instances/{instances}.glsl"
+#include "lib/instances/{instances}.glsl"
 #include "depth_formats/{depth_format}.glsl"
 #include "lib/nowhere.glsl"
 #include "hosts/splat.glsl"

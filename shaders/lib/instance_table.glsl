@@ -1,6 +1,6 @@
 // References: rendering/features/together.py, which writes this layout.
 // Summary: the values of each of many objects of one draw call, in the order of the uniform block of a single one. Each
-//          has as many triangles as the others.
+//          has as many triangles as the others, of which some may be beyond its own.
 
 struct Instance {
   mat4 model_view;
@@ -12,6 +12,8 @@ struct Instance {
   float first_slot;
   float more_slots;
   float split_distance;
+  float first;  // triangle in textures that objects share
+  float count;  // of its triangles, if it may have fewer than the others
 };
 
 Instance instance;
@@ -34,6 +36,8 @@ Instance stored_instance(int number) {
   stored.first_slot = single.w;
   stored.more_slots = more.x;
   stored.split_distance = more.y;
+  stored.first = more.z;
+  stored.count = more.w;
   return stored;
 }
 
@@ -42,8 +46,12 @@ int instance_of_vertex(int vertex) {
   return int(draw.first_instance) + vertex / (3 * int(draw.stride));
 }
 
+bool is_beyond;  // the object's own triangles
+
 // The vertex of an object that stands for one of the draw call, after its values were looked up.
 int vertex_of_instance(int vertex, int number) {
   instance = stored_instance(number);
-  return 3 * int(draw.first) + vertex % (3 * int(draw.stride));
+  int within = vertex % (3 * int(draw.stride)), triangle = min(within / 3, int(instance.count) - 1);
+  is_beyond = triangle < within / 3;
+  return 3 * (int(draw.first) + int(instance.first) + triangle) + within % 3;
 }

@@ -335,8 +335,7 @@ class Renderer:
             for p in context.with_cuts(view.placed):
                 context.drawn_count(p)  # chooses them
                 yield Pause()
-            coarse = sum(kind.count * context.stored(kind.placed).coarse for kind in view.placed.table.kinds)
-            stats["surfels_coarse"] = max(stats["surfels_coarse"], coarse)
+            stats["surfels_coarse"] = max(stats["surfels_coarse"], context.coarse(view.placed))
             target = yield from execution.run(frame_plan.steps, context)
             stats["layers"] = execution.turns
             are_hidden = context.hidden[view.placed.table.numbers]

@@ -59,6 +59,7 @@ class Items:
     split_distances: (n,) of polygons the farthest distance, of splats the least of their centres, view units; 0: no
         limit.
     step: the level of detail at which all of them are drawn whole, of `detail.steps`; None: each as its cut.
+    places: (n, 2) of those in a pool, the first triangle that is drawn of each, and their number; None for others.
     setback: minimum distance by which a visibility pass moves them back, beside `View.least_offset` and in its unit.
     """
 
@@ -70,6 +71,7 @@ class Items:
     split_distances: np.ndarray
     setback: float = 0.0
     step: int | None = None
+    places: np.ndarray | None = None
 
     def __len__(self) -> int:
         return len(self.table)
@@ -96,7 +98,8 @@ class Items:
     @property
     def key(self) -> bytes:
         """A key that is equal for equal items of one scene, seen from one place."""
-        each = self.table.numbers, self.hides_backs, self.overlaps, self.split_distances, np.array(self.scale)
+        places = np.zeros(0) if self.places is None else self.places
+        each = self.table.numbers, self.hides_backs, self.overlaps, self.split_distances, np.array(self.scale), places
         return b"".join(array.tobytes() for array in each)
 
     @cached_property

@@ -99,7 +99,7 @@ def test_a_composed_text_says_where_its_parts_are_from():
     opened, closed = (re.findall(rf"^// {mark} (.*)$", text, re.MULTILINE) for mark in (">>>", "<<<"))
     assert sorted(opened) == sorted(closed) == [
         "depth_formats/linear.glsl", "features/object_id.glsl", "hosts/visibility.frag.glsl",
-        "instances/uniform.glsl",
+        "lib/instances/uniform.glsl",
     ]  # fmt: skip
 
 

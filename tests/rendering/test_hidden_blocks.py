@@ -135,7 +135,6 @@ def test_hidden_blocks_are_not_drawn_into_shadow_maps(render, monkeypatch):
     counts, draw_splats = [], visibility.draw_splats
 
     def counted(tile, p, target, splats, *more, **named):
-        splats = list(splats)
         counts[-1] += sum(map(tile.drawn_count, splats)) if p.kind == "shadow" else 0
         yield from draw_splats(tile, p, target, splats, *more, **named)
 

@@ -25,7 +25,7 @@ RED, GREEN = Material(roughness=0.2, index=1), Material(metallic=0.7, index=2)
 
 @pytest.fixture(scope="module")
 def shapes():
-    polygons = make_polygons(PLACES, FACES, color=(0.3, 0.6, 0.2, 1.0))
+    polygons = make_polygons(PLACES, FACES, color=(0.3, 0.6, 0.2, 1.0))  # and splats that end at lines
     return {"surfels": sample_mesh(TriangleMesh(PLACES, FACES), resolution=12), "polygons": polygons}
 
 
@@ -94,15 +94,18 @@ def test_pictures_are_those_of_instances_drawn_one_by_one(case, shapes, on_devic
     fields, chosen = CASES[case]
     outputs = ("color", "depth", "normal", "coverage", "object_index", "material_index")
     scene, settings = field(shapes, **fields), Settings(outputs=outputs, shadow_resolution=128, **chosen)
+    monkeypatch.setattr(steps, "LEAST_TOGETHER", 100)
     alone, calls_alone = drawn(scene, settings, on_device, monkeypatch)
     assert not plan(scene, CAMERA, settings).has("TOGETHER")
-    monkeypatch.setattr(steps, "LEAST_TOGETHER", 2)
-    together, calls = drawn(scene, settings, on_device, monkeypatch)
-    assert plan(scene, CAMERA, settings).has("TOGETHER") and calls < 0.6 * calls_alone
-    for name in outputs:
-        one, other = (getattr(frame, name) for frame in (alone, together))
-        apart = np.abs(one.astype(np.float64) - other) > 1e-4 * (1 + np.abs(one))
-        assert apart.mean() < 0.004, name
+    # 4 kinds of 6 instances: each kind by one call, or all of them from one pool
+    for least in (2, 8):
+        monkeypatch.setattr(steps, "LEAST_TOGETHER", least)
+        together, calls = drawn(scene, settings, on_device, monkeypatch)
+        assert plan(scene, CAMERA, settings).has("TOGETHER") and calls < 0.6 * calls_alone
+        for name in outputs:
+            one, other = (getattr(frame, name) for frame in (alone, together))
+            apart = np.abs(one.astype(np.float64) - other) > 1e-4 * (1 + np.abs(one))
+            assert apart.mean() < 0.004, name
     assert (np.ptp(alone.coverage) > 0.9) == (case != "holdout")
 
 
@@ -126,6 +129,7 @@ def test_lights_of_sets_light_their_own_instances(shapes, on_device, monkeypatch
     lit = replace(scene, lights=(replace(scene.lights[0], receivers=(1,)),))
     sets = {kind: tuple(replace(i, light_set=i.index // 4 % 2) for i in getattr(lit, kind)) for kind in shapes}
     settings = Settings(outputs=("color",), shadow_resolution=0)
+    monkeypatch.setattr(steps, "LEAST_TOGETHER", 100)
     alone, _ = drawn(replace(lit, **sets), settings, on_device, monkeypatch)
     monkeypatch.setattr(steps, "LEAST_TOGETHER", 2)
     together, _ = drawn(replace(lit, **sets), settings, on_device, monkeypatch)

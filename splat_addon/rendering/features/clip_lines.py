@@ -9,7 +9,7 @@ from __future__ import annotations
 from ...large_surfels import SAMPLE_SIZE
 from ..plan.graph import Part
 from ..plan.planning import count, counted
-from .drawing import SPLAT_HOSTS
+from .drawing import SPLAT_HOSTS, pooled
 
 CONSTANTS = {"SAMPLE_SIZE": SAMPLE_SIZE}
 
@@ -22,11 +22,13 @@ _MORE_VARYINGS = {
     "blurs_lines": (("flat", "vec3", "from_first"), ("flat", "vec3", "from_second"), ("flat", "vec3", "clip_strip")),
 }
 
-DRAWN = {
-    "clip_lines": lambda tile, placed: tile.resources.clip_lines(
-        placed.instance.surfels, tile.levels(placed.instance), placed.part
-    )
-}
+
+def _drawn(tile, placed):
+    surfels, levels = placed.instance.surfels, tile.levels(placed.instance)
+    return pooled(tile, placed, "clip_lines") or tile.resources.clip_lines(surfels, levels, placed.part)
+
+
+DRAWN = {"clip_lines": _drawn}
 ARRIVES = {"clip_lines": lambda instance: instance.surfels.clipped_count > 0}
 
 

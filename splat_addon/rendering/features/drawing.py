@@ -34,12 +34,21 @@ LIGHTING_HOSTS = (*LIT_HOSTS, "lit_splats.frag")
 
 
 def _stored(tile: TileContext, placed: DrawItem, sampler: str) -> DeviceTexture:
-    return tile.stored(placed.instance).parts[placed.part][sampler]
+    return pooled(tile, placed, sampler) or tile.stored(placed.instance).parts[placed.part][sampler]
+
+
+def pooled(tile: TileContext, placed: DrawItem, sampler: str, *about) -> DeviceTexture | None:
+    """The texture of the pool that an object is drawn from; None if it has its own. about: as of `Pool.texture`."""
+    return None if placed.items.places is None else tile.pool(placed.items).texture(sampler, *about)
+
+
+def _corners(tile: TileContext, placed: DrawItem) -> DeviceTexture:
+    return pooled(tile, placed, "polygon_corners") or tile.resources.polygons(placed.instance.polygons)
 
 
 #: sampler -> the texture of the object being drawn
 DRAWN = {name: partial(_stored, sampler=name) for storage in STORAGES.values() for name in storage.samplers} | {
-    "polygon_corners": lambda tile, placed: tile.resources.polygons(placed.instance.polygons),
+    "polygon_corners": _corners,
 }
 #: Which of them take long to arrive, and whether an instance needs them.
 ARRIVES = {name: lambda instance: True for storage in STORAGES.values() for name in storage.samplers}
@@ -51,6 +60,7 @@ def draw_splats(tile: TileContext, p: Pass, target, items: Items, vertex, *varia
     variants: of the pass's programs. viewport: as `Device.draw_triangles` takes it.
     """
     programs = Programs(tile, p, vertex, *variants)
+    yield from _draw_pooled(tile, p, target, items, programs, viewport)
     for batch in tile.batches(items):
         if len(batch) == 1 and batch.step is None:
             yield from draw_parts(tile, p, target, tile.in_parts(batch.item(0)), programs, viewport)
@@ -89,6 +99,7 @@ def draw_polygons(
 ) -> Generator[Pause]:
     """Draw polygons. Those with holes have a program of their own."""
     programs = Programs(tile, p, vertex, *variants)
+    yield from _draw_pooled(tile, p, target, items, programs, viewport)
     for batch in tile.batches(items):
         placed = batch.item(0)
         kinds = {"cut_out": placed.instance.is_cut_out, "bumped": placed.instance.is_bumped}
@@ -135,6 +146,13 @@ def _draw_together(tile, p, target, batch: Items, program: Pipeline, which: rang
         blocks = tile.blocks(program, placed, draw_block(tile, placed, start, which.start, len(which)))
         tile.resources.device.draw_triangles(program, target, triangles, blocks, textures, viewport)
         yield Pause(target)
+
+
+def _draw_pooled(tile, p, target, items: Items, programs: Programs, viewport) -> Generator[Pause]:
+    """Draw those of the items that are in a pool."""
+    for batch, more, most in tile.pooled_batches(items):
+        program = yield from programs.of("together", *more)
+        yield from _draw_together(tile, p, target, batch, program, range(most), viewport)
 
 
 def draw_block(

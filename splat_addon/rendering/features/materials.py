@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from ..plan.graph import Part, Texture
 from ..upload.packing import pack_materials, shared_emission, shared_material
-from .drawing import LIGHTING_HOSTS, LIT_HOSTS, SPLAT_HOSTS
+from .drawing import LIGHTING_HOSTS, LIT_HOSTS, SPLAT_HOSTS, pooled
 
 NAMES = ("materials", "emission")
 
@@ -31,10 +31,9 @@ VALUES = {
 
 
 def _drawn(tile, placed):
-    instance, facts = placed.instance, tile.plan.facts
-    return tile.resources.materials(
-        instance, facts["emissions_differ"], facts["summed_finishes"], tile.levels(instance), placed.part
-    )
+    instance, about = placed.instance, (tile.plan.facts["emissions_differ"], tile.plan.facts["summed_finishes"])
+    shared = pooled(tile, placed, "materials", *about)
+    return shared or tile.resources.materials(instance, *about, tile.levels(instance), placed.part)
 
 
 DRAWN = {"materials": _drawn}

@@ -15,7 +15,7 @@ from ..shadows.maps import MAX_MAPS, atlas_size, map_ranges, pack_shadow_maps, s
 from ..shadows.receivers import NEAREST_SHARE
 from ..view import View
 from . import hidden_objects, lit_splats, visibility
-from .drawing import LIT_HOSTS, SPLAT_HOSTS
+from .drawing import LIT_HOSTS, SPLAT_HOSTS, pooled
 
 #: Offset of polygons, in texels of a map: a filter reaches two texels, over which planes at 45 degrees differ by this.
 SETBACK = 2.0
@@ -67,6 +67,8 @@ INPUTS = {
 
 def _surfel_lifts(tile, placed):
     instance = placed.instance
+    if shared := pooled(tile, placed, "surfel_lifts"):
+        return shared
     return tile.resources.surfel_lifts(instance.surfels, tile.levels(instance), placed.part)
 
 

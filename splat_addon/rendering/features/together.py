@@ -13,20 +13,20 @@ CONSTANTS = {"INSTANCES_PER_ROW": INSTANCES_PER_ROW, "TEXELS_PER_INSTANCE": TEXE
 DRAWN = {"instances": lambda tile, placed: tile.instance_table(placed.items)}
 
 
-def _most(planning) -> int:
-    """The most instances of one kind."""
-    return max((kind.count for kind in planning.scene.table.kinds), default=0)
+def _count(planning) -> int:
+    """The number of instances of surfels, or of polygons, that may be drawn together."""
+    return max(sum(kind.count for kind in kinds) for kinds in (planning.surfels, planning.polygons))
 
 
 def passes(planning):
     """No passes; records whether there are any."""
     if planning.shown and is_present(planning):
-        planning.has("TOGETHER", f"up to {planning.find(_most):,} instances are alike, and drawn together")
+        planning.has("TOGETHER", f"of {planning.find(_count):,} instances, those that are alike or small are one call")
     return ()
 
 
 def is_present(planning) -> bool:
-    return planning.find(_most) >= steps.LEAST_TOGETHER
+    return planning.find(_count) >= steps.LEAST_TOGETHER
 
 
 def parts(planning, p):

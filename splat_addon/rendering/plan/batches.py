@@ -14,6 +14,10 @@ from .uniforms import TEXELS_PER_INSTANCE, instance_values
 #: More levels than any hierarchy has.
 _MOST_STEPS = 64
 
+#: Objects that are drawn together differ by less than this part of a doubling in their triangles: the missing ones are
+#: drawn as nothing.
+_STEPS_OF_SIZES = 2
+
 #: Instances in a row of the texture that holds their values.
 INSTANCES_PER_ROW = 1024
 
@@ -35,6 +39,17 @@ def batches(items: Items, triangles: np.ndarray, steps: np.ndarray) -> list[Item
     for row in begins.tolist():
         own = items.taken(np.flatnonzero(group == group[row]) if are_together[row] else np.array([row]))
         made.append(replace(own, step=int(steps[row])) if steps[row] >= 0 else own)
+    return made
+
+
+def pooled_batches(items: Items, first: np.ndarray, counts: np.ndarray) -> list[tuple[Items, int]]:
+    """Items of a pool in groups that are drawn together, and the most triangles that any of a group has. first, counts:
+    (n,) the first triangle of each, and their number; those without are left out."""
+    made, steps = [], np.ceil(_STEPS_OF_SIZES * np.log2(np.maximum(counts, 1))).astype(int)
+    for step in np.unique(steps[counts > 0]).tolist():
+        rows = np.flatnonzero((steps == step) & (counts > 0))
+        places = np.stack([first[rows], counts[rows]], axis=1).astype(np.float64)
+        made.append((replace(items.taken(rows), places=places), int(counts[rows].max())))
     return made
 
 

@@ -11,6 +11,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from ...hierarchy import Hierarchy, Sight, cut_blocks, entries_of
+from ..detail import steps as detail
 from ..detail.levels import is_worth_preparing, sight
 from ..detail.steps import Steps, chosen_steps, make_steps, may_step
 from ..device.interface import Pipeline, Target
@@ -23,11 +24,12 @@ from ..settings import Settings
 from ..upload.cuts import Cut, whole_set
 from ..upload.loading import NotYet
 from ..upload.parts import place_in_part
+from ..upload.pools import MOST_POOLED, Pool, may_share
 from ..upload.resources import Resources, StoredSurfels, TextureKey
 from ..upload.storages import get_storage
 from ..upload.stored_order import SPLATS_PER_ROW, clipped_places
 from ..view import DrawItem, Items, View, split_distances
-from .batches import batches, instance_texels
+from .batches import batches, instance_texels, pooled_batches
 from .frame_plan import FramePlan
 from .graph import Loop, Pass, Pause, Step, Texture, of_pixels
 from .programs import describe
@@ -36,6 +38,10 @@ from .uniforms import DRAW, INSTANCE, VIEW, Block, instance_values, std140
 
 #: What rejects hidden splats reads less than this many pixels beyond their ellipses.
 _BESIDE = 24
+
+
+#: What stands for items of which each has textures of its own.
+_WHOLE = SimpleNamespace(places=None, step=None)
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,14 +137,13 @@ class TileContext:
         """The textures that a program samples. placed: the object being drawn."""
         called = dict(p.all("called"))
         read = {called.get(texture, texture.name): texture for texture in p.all("reads", "updates")}
-        return [
-            self.texture(read[name])
-            if name in read
-            else DRAWN[name](self, placed)
-            if name in DRAWN
-            else INPUTS[name](self)
-            for name in program.description.samplers
-        ]
+
+        def found(name: str) -> DeviceTexture:
+            if name in read:
+                return self.texture(read[name])
+            return DRAWN[name](self, placed) if name in DRAWN else INPUTS[name](self)
+
+        return [found(name) for name in program.description.samplers]
 
     def blocks(
         self, program: Pipeline, placed: DrawItem | None = None, draw: np.ndarray | None = None
@@ -162,16 +167,60 @@ class TileContext:
         return self.shared.of_eye(items.key, self.camera, lambda: self.resources.data(instance_texels(items)))
 
     def batches(self, items: Items) -> list[Items]:
-        """The items in groups that are drawn together."""
+        """The items in groups that are drawn together, except those of a pool."""
         if items not in self._batches:
+            alone = items
+            if pooled := self.pool(items):
+                alone = items.of_kinds(lambda placed: id(placed) not in pooled.rows)
             # a cut is its instance's own
-            are_whole = items.table.of_kinds(lambda placed: self.levels(placed) is None)
-            self._batches[items] = batches(items, items.table.triangles * are_whole, self.steps_of(items))
+            are_whole = alone.table.of_kinds(lambda placed: self.levels(placed) is None)
+            self._batches[items] = batches(alone, alone.table.triangles * are_whole, self.steps_of(alone))
         return self._batches[items]
 
     @cached_property
     def _batches(self) -> dict[Items, list[Items]]:
         return {}
+
+    def pool(self, items: Items) -> Pool | None:
+        """The pool that items of different kinds are drawn from, if there is one."""
+        if not len(items):
+            return None
+        kind = type(items.table.placed[0])
+        of = self.shared.kept(("pooled", kind), lambda: self._pooled(kind))
+        return self.resources.pool(of, get_storage(self.plan.storage)) if of else None
+
+    def _pooled(self, kind: type) -> list[Placed]:
+        """One instance of each kind in the pool of surfels or of polygons: small ones of which there are few."""
+        kinds = [k for k in self.scene.table.kinds if isinstance(k.placed, kind) and k.count < detail.LEAST_TOGETHER]
+        kinds = [k for k in kinds if may_share(k.placed) and k.placed.shape not in self.plan.facts.get("levels", ())]
+        ends = np.cumsum([len(k.placed.shape) for k in kinds])
+        kinds = kinds[: int(np.searchsorted(ends, MOST_POOLED, "right"))]
+        return [k.placed for k in kinds] if sum(k.count for k in kinds) >= detail.LEAST_TOGETHER else []
+
+    def pooled_batches(self, items: Items) -> list[tuple[Items, tuple[str, ...], int]]:
+        """What is drawn from the pool: groups, with the variants of their programs and the triangles of each item."""
+        if items not in self._pooled_batches:
+            self._pooled_batches[items] = list(self._found_in_pool(items))
+        return self._pooled_batches[items]
+
+    def _found_in_pool(self, items: Items):
+        if (pool := self.pool(items)) is None:
+            return
+        own = items.of_kinds(lambda placed: id(placed) in pool.rows)
+        kinds = np.array([pool.rows.get(id(placed), -1) for placed in own.table.every_kind], int)[own.table.kind_of]
+        first, clipped, counts = (array[kinds] for array in (pool.first, pool.clipped, pool.counts))
+        for more, start, size in (((), first + clipped, counts - clipped), (("clipped",), first, clipped)):
+            yield from ((batch, more, most) for batch, most in pooled_batches(own, start, size))
+
+    @cached_property
+    def _pooled_batches(self) -> dict[Items, list]:
+        return {}
+
+    def coarse(self, items: Items) -> int:
+        """The number of surfels that the storage makes visibly less precise."""
+        pool = self.pool(items)
+        alone = [kind for kind in items.table.kinds if not pool or id(kind.placed) not in pool.rows]
+        return sum(kind.count * self.stored(kind.placed).coarse for kind in alone) + (pool.coarse if pool else 0)
 
     @cached_property
     def _blocks(self) -> dict[Block, np.ndarray]:
@@ -223,7 +272,8 @@ class TileContext:
         """Request everything of the scene's surfels that passes read; raises `NotYet` for what is on its way."""
         read, late = {name for p in self.plan.passes for name in p.all("inputs")}, set()
         kinds = (kind.placed for kind in self.scene.table.kinds)
-        for instance in (placed for placed in kinds if isinstance(placed, Instance)):
+        pooled = set(map(id, self.shared.kept(("pooled", Instance), lambda: self._pooled(Instance))))
+        for instance in (placed for placed in kinds if isinstance(placed, Instance) and id(placed) not in pooled):
             if instance.is_cut:
                 # the next view has another, so that it would never be there
                 self.resources.loading.exempt.add(instance.surfels)
@@ -231,7 +281,7 @@ class TileContext:
             wanted = [name for name, is_needed in ARRIVES.items() if name in read and is_needed(instance)]
             for name in wanted:
                 try:
-                    DRAWN[name](self, SimpleNamespace(instance=instance, part=0))
+                    DRAWN[name](self, SimpleNamespace(instance=instance, part=0, items=_WHOLE))
                 except NotYet as reason:
                     # the rest is made when it is known whether the surfels have levels
                     late |= reason.surfels

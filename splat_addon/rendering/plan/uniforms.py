@@ -75,8 +75,13 @@ INSTANCE: Block = (
 TEXELS_PER_INSTANCE = 11
 
 
+#: More triangles than any instance has.
+_ENDLESS = 1 << 23
+
+
 def instance_values(items: Items) -> np.ndarray:
-    """(n, 44) float32 values of `INSTANCE` in std140 layout, of each of the items."""
+    """(n, 44) float32 values of `INSTANCE` in std140 layout, of each of the items; the last two are of tables alone:
+    the first triangle in textures that objects share, and the number of triangles."""
     count, from_eye = len(items), items.from_eye
     model_views = from_eye.model_views.copy()
     model_views[:, :3] *= items.scale
@@ -88,6 +93,7 @@ def instance_values(items: Items) -> np.ndarray:
     values[:, 32:36] = np.eye(MAX_LIGHT_SETS)[items.table.light_sets]
     single = from_eye.orientations, items.hides_backs, items.overlaps, *items.table.slots.T, items.split_distances
     values[:, 36:42] = np.stack(single, axis=1)
+    values[:, 42:] = (0, _ENDLESS) if items.places is None else items.places
     return values
 
 

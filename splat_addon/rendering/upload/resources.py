@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from copy import copy
 from functools import partial
 from typing import NamedTuple, TypeVar
-from weakref import WeakKeyDictionary
+from weakref import WeakKeyDictionary, ref
 
 import numpy as np
 
@@ -23,6 +23,7 @@ from .cuts import Cuts
 from .loading import JobShare, Loading, Made, NotYet, Packed
 from .packing import pack_clip_lines, pack_lifts, pack_materials, pack_own_materials, pack_uvs
 from .parts import places_in_parts, stored_parts
+from .pools import Pool
 from .storages import Storage
 from .stored_order import SPLATS_PER_ROW, clipped_places, places_of, stored_order
 
@@ -63,6 +64,7 @@ class Resources:
         self.textures = {}
         self.made_from = {}
         self.arrivals = 0
+        self._pools = {}
 
     def surfels(
         self, surfels: Surfels, storage: Storage, levels: Hierarchy | None = None, may_have_levels: bool = False
@@ -130,6 +132,16 @@ class Resources:
     def clip_lines(self, surfels: Surfels, levels: Hierarchy | None = None, part: int = 0) -> Texture:
         """The lines of those in one part that are clipped, uploaded once; merged ones' begin in a new row."""
         return self._with_levels(surfels, "clip_lines", (), levels, _packed_clip_lines)[part]
+
+    def pool(self, of: Sequence[Placed], storage: Storage) -> Pool:
+        """The textures that small objects share; kept until others are asked for. of: an instance of each kind."""
+        is_surfels = isinstance(of[0].shape, Surfels)
+        key = storage.name, *((ref(placed.shape), placed.materials) for placed in of)
+        if self._pools.get(is_surfels, (None,))[0] != key:
+            self._pools[is_surfels] = key, Pool(of, storage, self.data)
+        pool = self._pools[is_surfels][1]
+        pool.rows = {id(placed): row for row, placed in enumerate(of)}
+        return pool
 
     def load_some(self) -> None:
         """For a new picture, go on with what is on its way to the device."""
@@ -244,6 +256,7 @@ class Resources:
         self._held.clear()
         self.cuts.clear()
         self._atlases.clear()
+        self._pools.clear()
         self.textures.clear()
         self.made_from.clear()
 

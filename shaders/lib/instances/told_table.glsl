@@ -4,6 +4,10 @@
 #include "lib/instance_table.glsl"
 
 #part vertex
+bool is_beyond_instance() {
+  return is_beyond;
+}
+
 int begun_vertex() {
   int number = instance_of_vertex(gl_VertexID);
   instance_number = float(number);

@@ -4,6 +4,10 @@
 #part vertex
 #include "lib/instance_table.glsl"
 
+bool is_beyond_instance() {
+  return is_beyond;
+}
+
 int begun_vertex() {
   return vertex_of_instance(gl_VertexID, instance_of_vertex(gl_VertexID));
 }
