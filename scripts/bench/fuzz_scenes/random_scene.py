@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A random scene: objects with modifiers, surfels whose attributes somebody edited, lights, cameras, a world, settings.
-"""
+"""A random scene: objects with modifiers, surfels that somebody edited, lights, cameras, a world, settings."""
 
 from __future__ import annotations
 
@@ -106,7 +105,7 @@ def _add(by: Chance, scene, data, materials: list, held: Counter) -> None:
             data.materials.append(material)
         for kind in [by.pick(MODIFIERS) for _ in range(by.pick((0, 0, 1, 2)))]:
             _modify(by, made, kind, materials, held)
-        by.fill(made.surfel_splatting, 0.2)
+        by.fill(made.surfel_splatting, 0.2, without=("detail",))  # millions of surfels, if it is large
         if not data.polygons and by.some(0.5):
             show_as_points(made)
     by.fill(made, 0.1, only=[p.identifier for p in made.bl_rna.properties if p.identifier.startswith("visible_")])

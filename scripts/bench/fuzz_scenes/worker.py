@@ -35,14 +35,12 @@ from splat_addon.blender.properties import final_settings, viewport_settings
 from splat_addon.faults import is_worded, sentence_of
 from splat_addon.rendering import Camera, plan
 
+from . import HANG
 from .extremes import Chance
 from .random_scene import build, settings
 
 #: A file is emptied by reading Blender's own, once in so many cases; in between, what was made is removed.
 RESET = 50
-
-#: Seconds after which a case hangs, on a machine that does other things too.
-HANG = 60
 
 #: Bytes that the process may take.
 MOST_BYTES = 8 << 30
@@ -127,9 +125,9 @@ class Case:
     def _convert(self) -> None:
         for each in bpy.context.view_layer.objects:
             each.select_set(each.type == "MESH" and not each.hide_get())
-        for operator in (bpy.ops.object.surfels_from_mesh, bpy.ops.object.surfels_from_points):
+        few = {"density": "RESOLUTION", "resolution": 4}
+        for operator, options in ((bpy.ops.object.surfels_from_mesh, few), (bpy.ops.object.surfels_from_points, {})):
             if operator.poll():
-                options = {"resolution": 4} if operator is bpy.ops.object.surfels_from_mesh else {}
                 self._called(operator, **options)
 
     def _called(self, operator, **options) -> None:

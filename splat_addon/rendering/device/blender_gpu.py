@@ -136,7 +136,13 @@ class _Texture:
         if data is not None:
             values = np.ascontiguousarray(data, np.float32)
             options["data"] = gpu.types.Buffer("FLOAT", values.size, values.ravel())
-        self.handle = gpu.types.GPUTexture(self.size, format=_FORMAT_NAMES.get(format, format), **options)
+        try:
+            self.handle = gpu.types.GPUTexture(self.size, format=_FORMAT_NAMES.get(format, format), **options)
+        except Exception as error:
+            raise RuntimeError(
+                f"The graphics device makes no texture of {size[0]:,} x {size[1]:,} {format} ({error}); draw fewer "
+                "surfels or a smaller picture."
+            ) from error
 
 
 class _Target:
