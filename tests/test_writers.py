@@ -14,6 +14,13 @@ ALLOWED = {
     "scripts/bench/full_disk.py": {
         name: "its own small disk, in a temporary folder" for name in ("write_bytes", "unlink", "save_as_mainfile")
     },
+    "scripts/bench/fuzz/formats.py": {
+        "open": "scratch in a temporary folder",
+        "write_bytes": "scratch in a temporary folder",
+        "ZipFile": "in memory",
+    },
+    "scripts/bench/fuzz_scenes/__init__.py": {"open": "what workers print, while they do"},
+    "scripts/bench/fuzz_scenes/worker.py": {"fdopen": "a pipe"},
     "scripts/bench/streaming.py": {"unlink": "its own file, after the last measurement"},
     "scripts/build.py": {
         "ZipFile": "scratch in a temporary folder",

@@ -20,6 +20,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from bench.fuzz.formats import FORMATS, Coarser
+from splat_addon.whole_files import write_whole
 
 try:
     import resource
@@ -43,7 +44,7 @@ def main(name: str, seed: int, first: int, stop: int, out: Path) -> None:
             outcome, text = _outcome(kind, file, random)
             _allow(0.0)
             if outcome not in ("read", "coarser", "refused"):
-                (out / f"{name}-{number}{kind.suffix}").write_bytes(file)
+                write_whole(out / f"{name}-{number}{kind.suffix}", file)
             print(json.dumps([number, outcome, text[:500], _megabytes()]), flush=True)
 
 
