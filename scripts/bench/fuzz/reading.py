@@ -9,7 +9,6 @@ from __future__ import annotations
 import contextlib
 import faulthandler
 import json
-import linecache
 import os
 import signal
 import sys
@@ -20,6 +19,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from bench.fuzz.formats import FORMATS, Coarser
+from splat_addon.faults import is_worded
 from splat_addon.whole_files import write_whole
 
 try:
@@ -55,31 +55,20 @@ def _outcome(kind, file: bytes, random) -> tuple[str, str]:
         return "coarser", str(error)
     except MemoryError:
         return "memory", _place(sys.exc_info()[2])
-    except (OSError, ValueError) as error:
-        is_worded = _is_raised_here(error) and str(error).endswith(".")
-        return (
-            "refused" if is_worded else "unworded"
-        ), f"{type(error).__name__}: {error} {_place(error.__traceback__)}"
     except Exception as error:
-        return "unworded", f"{type(error).__name__}: {error} {_place(error.__traceback__)}"
+        is_sentence = is_worded(error) and str(error).endswith(".")
+        return (
+            "refused" if is_sentence else "unworded",
+            f"{type(error).__name__}: {error} {_place(error.__traceback__)}",
+        )
     return ("read", "") if is_finite else ("not finite", "")
 
 
-def _last(trace):
+def _place(trace) -> str:
+    """File and line of the last step."""
     while trace.tb_next:
         trace = trace.tb_next
-    return trace.tb_frame.f_code.co_filename, trace.tb_lineno
-
-
-def _place(trace) -> str:
-    file, line = _last(trace)
-    return f"({Path(file).name}:{line})"
-
-
-def _is_raised_here(error: Exception) -> bool:
-    """Whether the extension raised an error itself: then it has a sentence."""
-    file, line = _last(error.__traceback__)
-    return "splat_addon" in Path(file).parts and linecache.getline(file, line).strip().startswith("raise ")
+    return f"({Path(trace.tb_frame.f_code.co_filename).name}:{trace.tb_lineno})"
 
 
 def _allow(seconds: float) -> None:
