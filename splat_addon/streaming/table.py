@@ -30,7 +30,9 @@ class Table:
         self.blocks = self._empty()
         roots = np.arange(-(-file.roots // PAGE))
         self._read(roots)
-        if self._are_lost.any():
+        own = slice(file.roots)
+        # in a tree, each row is in one block
+        if self._are_lost.any() or int((self.blocks.last[own] - self.blocks.first[own]).sum()) > file.rows:
             raise ValueError(file.fault())
         #: pages of the roots, which stay when the others are forgotten
         self._stay = len(roots)

@@ -147,6 +147,20 @@ def test_numbers_of_another_block_out_of_bounds_make_its_parents_drawn(name, val
         check(path)
 
 
+def test_roots_with_more_rows_than_there_are_are_refused(edited):
+    def greedy(parts):
+        parts.directory["roots"] = len(parts.arrays["first"])
+        parts.arrays["first"][:], parts.arrays["last"][:] = 0, PAGE
+        parts.arrays["first_child"][:] = parts.arrays["last_child"][:]
+
+    path = edited(greedy)
+    tracemalloc.start()
+    with pytest.raises(ValueError, match=r"a.surfelblocks is damaged"):
+        Stream(path, 0)
+    assert tracemalloc.get_traced_memory()[1] < 5e6
+    tracemalloc.stop()
+
+
 def test_blocks_with_several_parents_cannot_make_a_descent_long_or_large(edited):
     """Each block has all that follow it for children, and 1,024 rows: without bounds, 2^1000 blocks."""
 
