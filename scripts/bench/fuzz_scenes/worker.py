@@ -39,9 +39,6 @@ from . import HANG
 from .extremes import Chance
 from .random_scene import build, settings
 
-#: A file is emptied by reading Blender's own, once in so many cases; in between, what was made is removed.
-RESET = 50
-
 #: Bytes that the process may take.
 MOST_BYTES = 8 << 30
 
@@ -61,7 +58,7 @@ class Case:
 
     def run(self, is_drawn: bool) -> None:
         """Make the scene and export it with each of its cameras; draw it, and convert its objects."""
-        _empty(self.number)
+        bpy.ops.wm.read_factory_settings(use_empty=True)
         scene = bpy.context.scene
         scene.render.engine = "SURFEL_SPLATTING"
         scene.surfel_splatting.broken_objects = "WARN"
@@ -140,15 +137,6 @@ class Case:
             self.unworded.append(sentence_of(error))
 
 
-def _empty(number: int) -> None:
-    if number % RESET == 0:
-        bpy.ops.wm.read_factory_settings(use_empty=True)
-        return
-    bpy.context.scene.camera = bpy.context.scene.world = bpy.context.scene.surfel_splatting.matcap = None
-    kinds = ("objects", "meshes", "materials", "lights", "cameras", "worlds", "images", "node_groups")
-    bpy.data.batch_remove([each for kind in kinds for each in getattr(bpy.data, kind) if each.name != "Render Result"])
-
-
 def main(arguments: list[str]) -> int:
     first, count, every = map(int, arguments)
     lines = os.fdopen(os.dup(1), "w", encoding="utf-8")
@@ -161,7 +149,6 @@ def main(arguments: list[str]) -> int:
     if resource is not None:
         resource.setrlimit(resource.RLIMIT_AS, (MOST_BYTES, MOST_BYTES))
     splat_addon.register()
-    bpy.ops.wm.read_factory_settings(use_empty=True)
     with np.errstate(all="ignore"):
         for number in range(first, first + count):
             # a hang ends with the stack of where it was, and exit code 1
