@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterator
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from types import SimpleNamespace
 
 import numpy as np
@@ -164,7 +164,7 @@ class TileContext:
 
     def instance_table(self, items: Items) -> DeviceTexture:
         """The texture of the values of many instances."""
-        return self.shared.of_eye(items.key, self.camera, lambda: self.resources.data(instance_texels(items)))
+        return self.shared.table(items.key, self.camera, lambda: self.resources.data(instance_texels(items)))
 
     def batches(self, items: Items) -> list[Items]:
         """The items in groups that are drawn together, except those of a pool."""
@@ -186,6 +186,9 @@ class TileContext:
         if not len(items):
             return None
         kind = type(items.table.placed[0])
+        return self.shared.kept(("pool", kind), lambda: self._made_pool(kind))
+
+    def _made_pool(self, kind: type) -> Pool | None:
         of = self.shared.kept(("pooled", kind), lambda: self._pooled(kind))
         return self.resources.pool(of, get_storage(self.plan.storage)) if of else None
 
@@ -368,7 +371,9 @@ class TileContext:
 
     def program(self, p: Pass, vertex: str = "fullscreen.vert", *variants: str) -> Pipeline:
         """The program of a pass. variants: of its parts, beside those in all programs."""
-        return self.resources.pipeline(describe(self.plan, p, vertex, *variants))
+        names = vertex, self.plan.linear_depth, *variants
+        make = partial(describe, self.plan, p, vertex, *variants)
+        return self.shared.program(p, names, lambda: self.resources.pipeline(make()))
 
     def seen_part(self, p: Pass, beside: int = _BESIDE) -> tuple[int, int, int, int] | None:
         """x, y, width, height of the part of a pass's target outside of which nothing is seen; None for all of it.

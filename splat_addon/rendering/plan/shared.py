@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import TypeVar
 
 from ..depth_range import clip_range
+from ..device.interface import Pipeline, Texture, texture_bytes
 from ..identity import Identities
 from ..scene import Instance, Scene
 from ..scene.camera import Camera
@@ -16,11 +17,12 @@ from ..settings import Settings
 from ..shadows.maps import ShadowMap
 from ..view import View, build_view
 from .frame_plan import FramePlan
+from .graph import Pass
 
 Made = TypeVar("Made")
 
-#: Values that are kept: programs, and tables of instances in passes, of the camera and of lights.
-_KEPT = 128
+#: Bytes of the tables of instances that are kept.
+_MOST_BYTES = 1 << 26
 
 
 class Shared:
@@ -29,18 +31,32 @@ class Shared:
     def __init__(self, scene: Scene, plan: FramePlan, settings: Settings):
         self.scene, self.plan, self.settings = scene, plan, settings
         self._kept: dict[Hashable, object] = {}
+        self._tables: dict[tuple[bytes, bytes], Texture] = {}
+        self._programs: dict[tuple, tuple[Pass, Pipeline]] = {}
 
     def kept(self, key: Hashable, make: Callable[[], Made]) -> Made:
-        """What was made for a key; the last few are kept."""
+        """What was made for a key."""
         if key not in self._kept:
-            while len(self._kept) >= _KEPT:
-                del self._kept[next(iter(self._kept))]
             self._kept[key] = make()
         return self._kept[key]
 
-    def of_eye(self, key: bytes, camera: Camera, make: Callable[[], Made]) -> Made:
-        """What was made for a key and the place of a camera, whichever window it looks through."""
-        return self.kept((camera.matrix_world.tobytes(), key), make)
+    def table(self, key: bytes, camera: Camera, make: Callable[[], Texture]) -> Texture:
+        """The table of instances with this key, from the place of a camera, whichever window it looks through. The last
+        ones are kept."""
+        key = camera.matrix_world.tobytes(), key
+        if key not in self._tables:
+            made = make()
+            while self._tables and texture_bytes([made, *self._tables.values()]) > _MOST_BYTES:
+                del self._tables[next(iter(self._tables))]
+            self._tables[key] = made
+        return self._tables[key]
+
+    def program(self, p: Pass, names: tuple, make: Callable[[], Pipeline]) -> Pipeline:
+        """The program of a pass with these names of its vertex shader and variants."""
+        known = self._programs.get((id(p), names))
+        if known is None or known[0] is not p:
+            known = self._programs[id(p), names] = p, make()
+        return known[1]
 
     @cached_property
     def shadow_views(self) -> tuple[View, ...]:
