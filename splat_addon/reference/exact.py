@@ -23,7 +23,7 @@ from .shading_models import DIAGNOSTIC, SHADERS
 from .splats import LEAST_OPACITY, Splats, eye_splats, projected_bounds
 from .world import WorldLight
 
-#: Rays per tile: enough for numpy to be efficient, few enough that a tile's arrays stay below 100 MB.
+#: Rays per tile: enough for numpy to be efficient, few enough that a tile takes 300 MB at most.
 TILE_RAYS = 300_000
 
 DEFAULTS = Settings()

@@ -7,7 +7,7 @@ visibility sweep finds how deep a ray may look, the attribute sweep averages wha
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,6 +19,9 @@ from .textures import point_colors
 
 #: Splat-ray pairs per batch: about 100 bytes each.
 CHUNK_PAIRS = 1_000_000
+
+#: Splat-ray pairs whose hits are held for all sweeps, 64 bytes each; if there are more, each sweep finds its own.
+HELD_PAIRS = 3_000_000
 
 #: A mean of unit normals shorter than this is rounding error of normals that cancel; the surface then faces the viewer.
 CANCELLED = 1e-6
@@ -61,14 +64,20 @@ class RayGrid:
         rows, columns = self.shape
         return (np.clip(row, 0, rows - 1) * columns + np.clip(column, 0, columns - 1)).astype(np.int64)
 
-    def through(self, column: np.ndarray, row: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """As `rays`, for n columns and rows, which may be outside the grid."""
+    def across(self, rays: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Two (n,) coordinates of rays in the window plane."""
+        return self._across(*self.columns_rows(rays))
+
+    def _across(self, column: np.ndarray, row: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         left, bottom = self._corner()
         step_x, step_y = self.steps()
+        return left + (self.first[0] + column + 0.5) * step_x, bottom + (self.first[1] + row + 0.5) * step_y
+
+    def through(self, column: np.ndarray, row: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """As `rays`, for n columns and rows, which may be outside the grid."""
         origin, direction = np.zeros((len(row), 3)), np.zeros((len(row), 3))
         across = origin if self.camera.is_orthographic else direction
-        across[:, 0] = left + (self.first[0] + column + 0.5) * step_x
-        across[:, 1] = bottom + (self.first[1] + row + 0.5) * step_y
+        across[:, 0], across[:, 1] = self._across(column, row)
         direction[:, 2] = -1
         return origin, direction
 
@@ -135,18 +144,25 @@ def visible_surface(splats: Splats, bounds, grid: RayGrid, epsilon: float, limit
     limit: (count,) depth beyond which something else hides splats.
     """
     splats, boxes = splats_in(splats, bounds, grid)
-    seen = np.minimum(visible_depth(splats, boxes, grid, epsilon), limit)
-    return average(splats, grid, _seen(splats, boxes, grid, seen))
+    sweep = _sweep(splats, boxes, grid)
+    seen = np.minimum(_visible_depth(splats, grid, sweep(), epsilon), limit)
+    return average(splats, grid, _seen(splats, grid, sweep(), seen))
 
 
-def visible_depth(splats: Splats, boxes, grid: RayGrid, epsilon: float, after=-np.inf, until=np.inf) -> np.ndarray:
-    """(count,) depth up to which each ray sees: that of its nearest hit, with each splat moved back by its epsilon.
+def visible_depth(splats: Splats, boxes, grid: RayGrid, epsilon: float) -> np.ndarray:
+    """(count,) depth up to which each ray sees: that of its nearest hit, with each splat moved back by its epsilon."""
+    return _visible_depth(splats, grid, _hits(splats, boxes, grid), epsilon)
 
-    after, until: depths, or (count,) of them; only hits beyond `after` and not beyond `until` count.
+
+def _visible_depth(
+    splats: Splats, grid: RayGrid, found: Iterable[Hits], epsilon: float, after=-np.inf, until=np.inf
+) -> np.ndarray:
+    """As `visible_depth`, of hits that were found. after, until: depths, or (count,) of them; only hits beyond `after`
+    and not beyond `until` count.
     """
     push, blend = splats.push(epsilon), splats.blend_depth()
     visibility = np.full(grid.count, np.inf)
-    for hits in _hits(splats, boxes, grid):
+    for hits in found:
         between = _between(hits, grid, after, until)
         # A point e moved back to e (1 + push / |e|) gains push / |direction| in depth, as |e| = depth |direction|.
         moved = hits.depth + np.minimum(push[hits.splat] / hits.stretch, blend[hits.splat] / hits.facing)
@@ -161,12 +177,13 @@ def layer_surfaces(splats: Splats, bounds, grid: RayGrid, epsilon: float, opaque
     these hits, moved back. opaque: (count,) depth up to which each ray sees opaque splats.
     """
     splats, boxes = splats_in(splats, bounds, grid)
+    sweep = _sweep(splats, boxes, grid)
     peeled = np.full(grid.count, -np.inf)
     while True:
-        depth = visible_depth(splats, boxes, grid, epsilon, peeled, opaque)
+        depth = _visible_depth(splats, grid, sweep(), epsilon, peeled, opaque)
         if not np.isfinite(depth).any():
             return
-        yield average(splats, grid, _seen(splats, boxes, grid, np.minimum(depth, opaque), peeled))
+        yield average(splats, grid, _seen(splats, grid, sweep(), np.minimum(depth, opaque), peeled))
         peeled = depth
 
 
@@ -176,9 +193,9 @@ def _between(hits: Hits, grid: RayGrid, after, until) -> np.ndarray:
     return np.flatnonzero((hits.depth > after) & (hits.depth <= until))
 
 
-def _seen(splats: Splats, boxes, grid: RayGrid, visibility: np.ndarray, after=-np.inf):
+def _seen(splats: Splats, grid: RayGrid, found: Iterable[Hits], visibility: np.ndarray, after=-np.inf):
     side = splats.side_weight() * ~splats.is_holdout
-    for hits in _hits(splats, boxes, grid):
+    for hits in found:
         seen = _between(hits, grid, after, visibility)
         splat = hits.splat[seen]
         yield hits.ray[seen], splat, np.exp(-2 * hits.rho2[seen]) * side[splat], hits.depth[seen], hits.place[seen]
@@ -189,16 +206,20 @@ def average(splats: Splats, grid: RayGrid, contributions) -> Surface:
     (m,), and places (m, 2).
     """
     attributes = np.concatenate([splats.color, splats.normal, splats.surface], axis=1).T
+    alike = [False] * 6 + [len(row) > 0 and (row == row[0]).all() for row in attributes[6:]]
     sums, count = np.zeros((3 + len(attributes), grid.count)), np.zeros(grid.count)
     for ray, splat, weight, depth, place in contributions:
         count += np.bincount(ray, minlength=grid.count)
-        sums[0] += np.bincount(ray, weight, grid.count)
+        weights = np.bincount(ray, weight, grid.count)
+        sums[0] += weights
         sums[1] += np.bincount(ray, weight * depth, grid.count)
-        values, shown = attributes[:, splat], weight * splats.opacity[splat]
+        colors, shown = attributes[:3, splat], weight * splats.opacity[splat]
         sums[-1] += np.bincount(ray, shown, grid.count)
-        _look_textures_up(splats, splat, place, values[:3])
-        for k, (total, row) in enumerate(zip(sums[2:-1], values, strict=True)):
-            total += np.bincount(ray, (shown if k < 3 else weight) * row, grid.count)
+        _look_textures_up(splats, splat, place, colors)
+        for total, row in zip(sums[2:5], colors, strict=True):
+            total += np.bincount(ray, shown * row, grid.count)
+        for total, row, is_alike in zip(sums[5:-1], attributes[3:], alike[3:], strict=True):
+            total += weights * row[0] if is_alike else np.bincount(ray, weight * row[splat], grid.count)
     return _averages(sums, count)
 
 
@@ -232,7 +253,16 @@ def splats_in(splats: Splats, bounds, grid: RayGrid):
     return splats.take(rows), (first[rows], end[rows])
 
 
-def _hits(splats: Splats, boxes, grid: RayGrid):
+def _sweep(splats: Splats, boxes, grid: RayGrid) -> Callable[[], Iterable[Hits]]:
+    """What gives the hits of the grid for one sweep after another."""
+    first, end = boxes
+    if (end - first).prod(axis=1).sum() > HELD_PAIRS:
+        return lambda: _hits(splats, boxes, grid)
+    held = list(_hits(splats, boxes, grid))
+    return lambda: held
+
+
+def _hits(splats: Splats, boxes, grid: RayGrid) -> Iterator[Hits]:
     """Every hit in the grid, in chunks."""
     rows = np.arange(len(splats))
     for ray, splat in candidates(rows, *boxes, grid):
@@ -255,23 +285,44 @@ def candidates(rows: np.ndarray, first: np.ndarray, end: np.ndarray, grid: RayGr
 
 
 def _intersections(splats: Splats, ray, splat, grid: RayGrid) -> Hits:
-    """Ray and plane; the ellipse's coordinates by the dual basis of u and v; NaN (a ray in the plane) never hits."""
-    origin, direction = grid.rays(ray)
+    """Ray and plane; the ellipse's coordinates by the dual basis of u and v; NaN (a ray in the plane) never hits.
+
+    All of these are linear in the ray's place in the window, divided by a linear function for a perspective camera, so
+    that their coefficients are found once for each splat.
+    """
     first = splat[0] if len(splat) else 0
     chunk, local = splats.take(np.arange(first, splat[-1] + 1 if len(splat) else 0)), splat - first
+    x, y = grid.across(ray)
     square = np.einsum("ij,ij->i", chunk.plane, chunk.plane)[:, None]
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        dual_u, dual_v = np.cross(chunk.v, chunk.plane) / square, np.cross(chunk.plane, chunk.u) / square
-        plane, to_center = chunk.plane[local], chunk.center[local] - origin
-        depth = np.einsum("ij,ij->i", plane, to_center) / np.einsum("ij,ij->i", plane, direction)
-        offset = depth[:, None] * direction - to_center
-        a, b = (np.einsum("ij,ij->i", offset, dual[local]) for dual in (dual_u, dual_v))
+        duals = np.cross(chunk.v, chunk.plane) / square, np.cross(chunk.plane, chunk.u) / square
+        plane, *duals = (
+            _Form(vector, np.einsum("ij,ij->i", vector, chunk.center), local) for vector in (chunk.plane, *duals)
+        )
+        if grid.camera.is_orthographic:
+            depth, cosine = (plane.across(x, y) - plane.at_center) / plane.z, np.abs(plane.z)
+            a, b = (dual.across(x, y) - depth * dual.z - dual.at_center for dual in duals)
+        else:
+            facing = plane.across(x, y) - plane.z
+            depth, cosine = plane.at_center / facing, np.abs(facing)
+            a, b = (depth * (dual.across(x, y) - dual.z) - dual.at_center for dual in duals)
         rho2 = a * a + b * b
         hit = np.flatnonzero((rho2 <= 1) & (depth >= grid.camera.near) & (depth <= grid.camera.far))
     place = np.stack([a[hit], b[hit]], axis=1)
     if chunk.is_clipped:
         inside = np.flatnonzero(kept(place, chunk.clip[local[hit]], chunk.reflex[local[hit]]))
         hit, place = hit[inside], place[inside]
-    facing = np.abs(np.einsum("ij,ij->i", plane[hit], direction[hit])) / np.sqrt(square[local[hit], 0])
-    stretch = np.linalg.norm(direction[hit], axis=1)
+    stretch = np.ones(len(hit)) if grid.camera.is_orthographic else np.sqrt(x[hit] ** 2 + y[hit] ** 2 + 1)
+    facing = cosine[hit] / np.sqrt(square[:, 0])[local[hit]]
     return Hits(ray[hit], splat[hit], place, rho2[hit], depth[hit], stretch, facing)
+
+
+class _Form:
+    """A vector of each splat, by whose product with a point something is measured, for pairs with rays."""
+
+    def __init__(self, vectors: np.ndarray, at_center: np.ndarray, splat: np.ndarray):
+        self.x, self.y, self.z = (vectors[:, k][splat] for k in range(3))
+        self.at_center = at_center[splat]
+
+    def across(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        return self.x * x + self.y * y

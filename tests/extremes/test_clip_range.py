@@ -66,7 +66,7 @@ def test_a_wall_as_deep_as_its_distance_rounds_is_whole(depth, fov, hold, lit, c
 
 
 def test_the_clip_range_ends_a_thousandth_beyond_what_is_there(lit, camera):
-    seen = build_view(lit(discs([(0, 0, -0.7), (0, 0, -3.7)], (1e-5, 0, 0), (0, 1e-5, 0))), camera(far=1e6), 0.0)
+    seen = build_view(lit(discs([(0, 0, -0.7), (0, 0, -3.7)], (1e-5, 0, 0), (0, 1e-5, 0))).table, camera(far=1e6), 0.0)
     first, last = seen.first / seen.scale, seen.far / seen.scale
     assert 0.998 * 0.7 < first < 0.9995 * 0.7
     assert 1.0005 * 3.7 < last < 1.002 * 3.7

@@ -118,7 +118,7 @@ def test_nothing_is_seen_of_backs_of_solids(method, render):
     below = replace(hidden, polygons=(replace(floor, shape=replace(floor.polygons, is_solid=True)),))
     settings = replace(MIP, method=method, outputs=("coverage",))
     assert render(scene, camera, settings).coverage.max() > 0.9
-    view = build_view(below, camera, settings.epsilon)
+    view = build_view(below.table, camera, settings.epsilon)
     assert [item.hides_backs for item in (*view.placed, *view.polygons)] == [True, True]
     for closed in (hidden, below):
         assert not render(closed, camera, settings).coverage.any()

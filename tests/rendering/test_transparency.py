@@ -277,9 +277,12 @@ def test_tiles_store_the_depths_of_the_whole(method, edge, render, monkeypatch):
 
 def test_parts_of_a_picture_are_as_deep_as_the_whole():
     scene, camera = spheres(64)
-    whole = build_view(scene, camera, 0.5)
+    whole = build_view(scene.table, camera, 0.5)
     for part in (camera.cropped(0, 0, 9, 9), camera.cropped(50, 40, 8, 9)):
-        own, common = build_view(scene, part, 0.5), build_view(scene, part, 0.5, clip_range(scene, camera, 0.5))
+        own, common = (
+            build_view(scene.table, part, 0.5),
+            build_view(scene.table, part, 0.5, clip_range(scene.table, camera, 0.5)),
+        )
         assert (own.first, own.far) != (whole.first, whole.far)
         assert (common.first, common.far, common.scale) == (whole.first, whole.far, whole.scale)
         assert common.least_offset(False) == whole.least_offset(False)

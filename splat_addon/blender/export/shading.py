@@ -99,6 +99,7 @@ def color_times_strength(shader: Shader, owner: str, notes) -> tuple[float, floa
 
 BLACK = (0.0, 0.0, 0.0)
 
+
 def finite_radiance(radiance: tuple[float, float, float], owner: str, notes) -> tuple[float, float, float]:
     """The radiance; if pictures cannot represent it, black and a note. owner: the subject of a sentence."""
     if is_radiance(radiance):

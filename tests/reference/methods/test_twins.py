@@ -254,7 +254,7 @@ def test_depths_that_a_filter_reaches_beyond_a_grazing_splat_are_held_near_it(me
         is_seen = (weights > 1e-6) & (picture > 1e-6)
         assert is_seen.any()
         depths = depths[is_seen]
-        drawn_depths = depth_sum[is_seen] / picture[is_seen] / build_view(Scene((surfels,)), camera, 1e9).scale
+        drawn_depths = depth_sum[is_seen] / picture[is_seen] / build_view(Scene((surfels,)).table, camera, 1e9).scale
         np.testing.assert_allclose(drawn_depths, depths, rtol=0, atol=0.02 * splat.size)
         reach = np.abs(depths + axes[0][2])
         is_held.append(np.count_nonzero(np.isclose(reach, reach.max(), rtol=1e-9)) > 1)
