@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import settings
 
 ROOT = Path(__file__).resolve().parent.parent
 if str(ROOT) not in sys.path:
@@ -26,6 +27,12 @@ from splat_addon import reference  # noqa: E402
 from splat_addon.reference.kept import folder, remembered, write  # noqa: E402
 
 pytest_plugins = ("tests.collecting", "tests.costs")
+
+# Properties are tried with the same few examples in every run; `--hypothesis-profile long` tries many new ones. A test
+# whose examples are dear takes a share: @settings(max_examples=settings.default.max_examples // 5).
+settings.register_profile("every run", deadline=None, max_examples=50, derandomize=True, database=None)
+settings.register_profile("long", deadline=None, max_examples=2000)
+settings.load_profile("every run")
 
 # The truth does not depend on the device, so the group of tests that comes first finds it for both. Tests import these
 # two by name, and all of them after this file.

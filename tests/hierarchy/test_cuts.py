@@ -41,7 +41,7 @@ def drawn(view):
     return np.bincount(np.concatenate([BELOW[e] for e in entries]), minlength=COUNT), len(entries)
 
 
-@settings(deadline=None, max_examples=40)
+@settings(max_examples=settings.default.max_examples // 2)
 @given(
     st.tuples(*[st.floats(-30, 30)] * 3).filter(lambda p: np.linalg.norm(p) > 0.1),
     st.floats(0, 20),
@@ -51,7 +51,7 @@ def test_every_surfel_is_drawn_once(eye, tolerance):
     assert (times == 1).all()
 
 
-@settings(deadline=None, max_examples=40)
+@settings(max_examples=settings.default.max_examples // 2)
 @given(st.floats(2.5, 30), st.floats(-1.2, 0.9), st.floats(0, 20), st.booleans())
 def test_a_split_ball_is_its_surfels_beyond_the_split_of_which_those_at_polygons_are_not_merged(
     distance, offset, tolerance, is_parallel
@@ -80,7 +80,7 @@ def test_half_of_a_split_ball_is_left_out_and_most_of_the_other_half_is_merged()
     assert 0.45 * count < finest < 0.6 * count and merged < 0.4 * finest
 
 
-@settings(deadline=None, max_examples=30)
+@settings(max_examples=settings.default.max_examples // 2)
 @given(st.tuples(*[st.floats(-6, 6)] * 3).filter(lambda p: np.linalg.norm(p) > 1.2), st.floats(0, 10))
 def test_what_faces_the_eye_is_drawn_where_backs_are_hidden(eye, tolerance):
     times, _ = drawn(sight(eye, tolerance, hides_backs=True))
@@ -88,7 +88,7 @@ def test_what_faces_the_eye_is_drawn_where_backs_are_hidden(eye, tolerance):
     assert (times[facing] == 1).all() and times.max() == 1
 
 
-@settings(deadline=None, max_examples=30)
+@settings(max_examples=settings.default.max_examples // 2)
 @given(st.tuples(*[st.floats(-4, 4)] * 3))
 def test_a_hollow_ball_is_drawn_where_it_faces_the_eye(eye):
     """Places and normals in one block then point in opposite directions."""
@@ -104,7 +104,7 @@ def test_most_backs_are_left_out():
     assert (times > 0).sum() < 1.5 * facing.sum()
 
 
-@settings(deadline=None, max_examples=30)
+@settings(max_examples=settings.default.max_examples // 2)
 @given(st.tuples(*[st.floats(-1, 1)] * 3).filter(lambda n: np.linalg.norm(n) > 0.1), st.floats(-1, 1))
 def test_what_lies_inside_of_the_picture_is_drawn(normal, distance):
     normal = np.asarray(normal) / np.linalg.norm(normal)

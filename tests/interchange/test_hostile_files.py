@@ -130,7 +130,7 @@ def test_damaged_numbers_are_never_warned_of_by_numpy(ply, layout, kind):
         assert np.isfinite(read.surfels.positions).all() if layout != "points" else read.positions.shape == (30, 3)
 
 
-@settings(deadline=None, max_examples=300, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data(), gaussian=st.booleans())
 def test_bytes_changed_anywhere_give_surfels_or_one_sentence(surfels, tmp_path, data, gaussian):
     path = tmp_path / "a.ply"

@@ -31,7 +31,7 @@ def test_an_empty_set_with_optional_fields_comes_back(surfels, tmp_path):
     }
 
 
-@settings(deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
     positions=arrays(np.float32, (3, 3), elements=FLOATS),
     scales=arrays(np.float32, (3, 2), elements=st.floats(min_value=2.0**-126, max_value=2.0**126, width=32)),

@@ -46,7 +46,7 @@ def test_a_cube_in_any_position_has_no_holes(cube):
     assert len(uncovered_points(box, sampling.surfels, grid_spacing(box, resolution=64))) == 0
 
 
-@settings(deadline=None, max_examples=15)
+@settings(max_examples=settings.default.max_examples // 5)
 @given(st.tuples(*[st.floats(-3, 3)] * 3))
 def test_merged_surfels_lie_on_flat_faces_in_every_position(angles):
     """On a plane through the origin every merged surfel lies in the plane and faces along its normal."""

@@ -102,7 +102,7 @@ def test_leaves_are_not_compared_with_all_that_are_behind_them(monkeypatch):
     assert 0 < sum(compared) < 50_000
 
 
-@settings(deadline=None, max_examples=40)
+@settings(max_examples=settings.default.max_examples // 2)
 @given(seed=st.integers(0, 2**32 - 1), count=st.integers(1, 60))
 def test_places_are_found_on_the_triangles_that_they_lie_in(seed, count):
     random = np.random.default_rng(seed)

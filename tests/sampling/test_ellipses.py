@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from splat_addon.quaternions import quaternion_axes
@@ -13,7 +13,6 @@ from splat_addon.sampling.attributes.ellipses import ellipse_rotations, ellipse_
 from tests.plain import sample_mesh
 
 
-@settings(deadline=None)
 @given(st.tuples(*[st.floats(-1, 1)] * 3).filter(lambda n: max(map(abs, n)) > 0.1), st.integers(0, 2))
 @example((0.0, 0.5, 2.6e-161), 1)  # its square is a denormal number
 def test_the_frame_is_the_steepest_direction_the_one_across_and_the_normal(normal, axis):

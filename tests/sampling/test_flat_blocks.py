@@ -34,7 +34,7 @@ def test_a_flat_square_needs_few(square):
     assert (surfels.normals == (0, 0, 1)).all()
 
 
-@settings(deadline=None, max_examples=10)
+@settings(max_examples=settings.default.max_examples // 5)
 @given(angles=st.tuples(*[st.floats(-3, 3)] * 3), resolution=st.sampled_from([40, 97, 160]))
 def test_nothing_is_bare_and_no_large_surfel_reaches_an_edge(angles, resolution, box):
     from scipy.spatial.transform import Rotation

@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from splat_addon.sampling import Channel, Surface, Texture, TriangleMesh, VertexColors
@@ -115,7 +115,6 @@ def test_a_textured_small_part_has_the_mean_of_its_texture(square):
     assert np.allclose(sample_surface(mesh, spacing=SPACING).surfels.colors[0, :3], 0.5, atol=0.01)
 
 
-@settings(deadline=None, max_examples=200)
 @given(st.lists(st.tuples(*[st.integers(0, 30)] * 3), min_size=1, max_size=40))
 def test_parts_are_the_connected_components(triangles):
     """The expected components are scipy's, for the same edges."""

@@ -66,7 +66,7 @@ SHAPES = {
 }
 
 meshes = st.builds(soup, st.sampled_from(sorted(SHAPES)), st.integers(0, 2**31))
-fast = settings(deadline=None, max_examples=20)
+few = settings(max_examples=settings.default.max_examples // 5)
 
 
 def rows(surfels):
@@ -75,7 +75,7 @@ def rows(surfels):
     return sorted(map(bytes, np.concatenate(fields, axis=1)))
 
 
-@fast
+@few
 @given(meshes, st.randoms(use_true_random=False))
 def test_the_order_of_the_triangles_does_not_matter(mesh, random):
     """Only the order of the surfels may change; the sets are equal bit by bit."""
@@ -85,7 +85,7 @@ def test_the_order_of_the_triangles_does_not_matter(mesh, random):
     assert rows(sample_mesh(mesh, resolution=RESOLUTION)) == rows(sample_mesh(shuffled, resolution=RESOLUTION))
 
 
-@fast
+@few
 @given(meshes)
 def test_reductions_by_normals_keep_subsets_and_3_to_1_merges(mesh):
     cells = {}
@@ -111,7 +111,7 @@ def farthest(resolution):
     return (np.sqrt(3) * min(resolution, resolution / 2 + 8) + 0.71 * resolution) * 2.0**-24
 
 
-@settings(deadline=None, max_examples=40)
+@settings(max_examples=settings.default.max_examples // 2)
 @given(meshes, st.sampled_from([7, 64, 97, 256, 1024]))
 def test_surfels_lie_on_their_triangles_within_float32(mesh, resolution):
     """This is 1e-5 H up to resolution 97, for triangles of any shape, including slivers."""
@@ -130,7 +130,7 @@ def test_surfels_lie_on_their_triangles_within_float32(mesh, resolution):
     assert away.max(initial=0) / spacing <= bound + 1e-9
 
 
-@fast
+@few
 @given(meshes)
 def test_normals_and_frames_are_unit_vectors(mesh):
     surfels = sample_mesh(mesh, resolution=RESOLUTION, reduction="none")
@@ -138,7 +138,7 @@ def test_normals_and_frames_are_unit_vectors(mesh):
         assert np.abs(np.linalg.norm(vectors.astype(np.float64), axis=1) - 1).max(initial=0) < 5e-7
 
 
-@fast
+@few
 @given(
     st.sampled_from(["random", "flat", "needles", "on quarter cells"]),
     st.integers(0, 2**31),
@@ -170,7 +170,7 @@ def tetrahedra(shape: str, seed: int, count: int = 8) -> TriangleMesh:
     return TriangleMesh(corners.reshape(-1, 3), triangles)
 
 
-@fast
+@few
 @given(meshes, st.integers(-20, 20), st.sampled_from([0, 1, -1]))
 def test_scale_and_place_change_nothing_but_the_numbers(mesh, power, side):
     """Vertices at multiples of 2^-27 of the box can be scaled and moved without rounding.
@@ -188,7 +188,7 @@ def test_scale_and_place_change_nothing_but_the_numbers(mesh, power, side):
     assert (b.origin == (a.origin + offset) * scale).all()
 
 
-@fast
+@few
 @given(meshes, st.floats(-6, 6))
 def test_any_scale_gives_the_same_within_rounding(mesh, power):
     """A scale that is not a power of two rounds vertices in their 16th digit, which may move a sample across an
@@ -207,7 +207,7 @@ def test_any_scale_gives_the_same_within_rounding(mesh, power):
     assert alone <= 2 + len(near) // 100
 
 
-@fast
+@few
 @given(meshes, st.integers(1, 40), st.integers(1, 3000), st.integers(1, 3000))
 def test_chunks_and_batches_of_any_size_give_the_same(mesh, chunk, rows, samples):
     colors = np.random.default_rng(0).random((len(mesh), 3, 4))
@@ -223,7 +223,7 @@ def test_chunks_and_batches_of_any_size_give_the_same(mesh, chunk, rows, samples
     assert all((array == parts.arrays()[name]).all() for name, array in whole.arrays().items())
 
 
-@fast
+@few
 @given(meshes)
 def test_each_ray_meets_each_triangle_at_most_once(mesh):
     """There is one sample per ray and surface, so no two surfels of a triangle share a ray."""
@@ -235,7 +235,7 @@ def test_each_ray_meets_each_triangle_at_most_once(mesh):
     assert len(np.unique(np.delete(cells, axis, axis=1), axis=0)) == kept
 
 
-@settings(deadline=None, max_examples=12)
+@settings(max_examples=settings.default.max_examples // 10)
 @given(st.integers(0, 2**31), st.sampled_from([0.0, 0.1, 0.3]))
 def test_at_most_3_points_in_10000_of_a_random_closed_surface_are_bare(seed, roughness):
     """The surfaces are stretched, turned and dented spheres; creases of the dents cross the regions of all axes."""

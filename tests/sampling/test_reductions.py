@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from splat_addon.sampling import REDUCTIONS, TriangleMesh, predict_count, projected_area
@@ -24,14 +24,12 @@ def rows(surfels):
     return set(map(bytes, np.concatenate([surfels.positions, surfels.scales, surfels.normals], axis=1)))
 
 
-@settings(deadline=None)
 @given(normals)
 def test_the_normal_reduction_keeps_the_one_image_that_faces_the_surface_most(normal):
     kept = keep_dominant(normal, 0)
     assert kept.sum() == 1 and normal[kept] == normal.max()
 
 
-@settings(deadline=None)
 @given(normals, st.floats(LEAST_GRAZING_ANGLE, math.pi / 2))
 def test_no_surface_is_refused_by_all_images(normal, angle):
     assert keep_facing(normal, angle).any()

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from splat_addon.sampling.ldc.scan_conversion import Spans, batches, expand, scan_convert
@@ -47,7 +47,6 @@ def test_an_edge_that_misses_a_cell_centre_by_the_least_fraction_is_on_the_right
         checked += 1
 
 
-@settings(deadline=None, max_examples=200)
 @given(st.integers(-60, 60), st.integers(1, 60), st.integers(1, 30), st.sampled_from([64, 1024, 8192]))
 def test_an_edge_through_cell_centres_passes_them_exactly(columns, rows, repeats, subcells):
     """The edge starts at (2000, 0) and takes `repeats` steps of (columns, rows) cells; every step ends at a cell
@@ -59,7 +58,6 @@ def test_an_edge_through_cell_centres_passes_them_exactly(columns, rows, repeats
     assert (spans.columns[spans.rows % rows == 0] == 2000 + columns * np.arange(repeats)).all()
 
 
-@settings(deadline=None, max_examples=200)
 @given(st.lists(st.tuples(st.integers(-32, 32 * 64), st.integers(-32, 32 * 64)), min_size=4, max_size=4))
 def test_two_halves_of_a_quad_have_the_samples_of_the_whole(corners):
     """Counted with the sign of their winding, the triangles 012 and 023 have the same samples as 013 and 123."""

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 import trimesh
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from splat_addon.sampling import TriangleMesh
@@ -39,7 +39,6 @@ def chunk(request, monkeypatch):
 
 @pytest.mark.usefixtures("chunk")
 def test_areas_uses_and_repeats_are_those_of_each_triangle():
-    @settings(deadline=None, max_examples=200)
     @given(TRIANGLES)
     def check_one(triangles):
         mesh = mesh_of(triangles)
@@ -62,7 +61,6 @@ def test_areas_uses_and_repeats_are_those_of_each_triangle():
 def test_a_surface_is_closed_exactly_where_its_boundary_vanishes():
     closed = set()
 
-    @settings(deadline=None, max_examples=200)
     @given(TRIANGLES, st.booleans())
     def check_one(triangles, is_doubled):
         triangles = [*triangles, *(row[::-1] for row in triangles)] if is_doubled else triangles

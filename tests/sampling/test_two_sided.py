@@ -50,7 +50,7 @@ def hidden(mesh, resolution):
 angles = st.tuples(*[st.floats(-3, 3)] * 3)
 
 
-@settings(deadline=None, max_examples=20)
+@settings(max_examples=settings.default.max_examples // 5)
 @given(
     angles=angles,
     resolution=st.sampled_from([17, 40, 97]),

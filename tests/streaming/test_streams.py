@@ -33,7 +33,7 @@ def levels(whole):
     return hierarchy, concatenate([whole, hierarchy.nodes]).arrays()
 
 
-@settings(deadline=None, max_examples=25)
+@settings(max_examples=settings.default.max_examples // 4)
 @given(EYES, st.floats(0.01, 20), st.tuples(*[st.floats(-1, 1)] * 4), st.booleans())
 def test_it_is_the_cut_of_the_hierarchy_in_memory(stream, levels, whole, eye, tolerance, plane, hides_backs):
     view = sight(eye, tolerance, planes=(plane,), hides_backs=hides_backs)

@@ -52,7 +52,7 @@ def test_neighbours_lie_at_their_distances_and_are_others(cloud):
     assert np.allclose(distances, measured, rtol=1e-5, atol=0)
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=settings.default.max_examples // 2)
 @given(arrays(np.int64, (40, 3), elements=st.integers(0, 30)), st.integers(0, 40), st.integers(1, 6))
 def test_any_points_have_the_neighbours_of_a_plain_search(cells, exponent, count):
     points = np.unique(cells, axis=0) * 2.0**exponent
