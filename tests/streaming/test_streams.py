@@ -84,14 +84,16 @@ def covered(surfels, eye):
     rays = np.stack([r * np.cos(turn), r * np.sin(turn), z], axis=1)
     axes, normals = surfels.half_axes(), surfels.geometric_normals()
     heights = np.einsum("nk,nk->n", normals, surfels.positions)
-    result = np.zeros(len(rays), bool)
-    for number, ray in enumerate(rays):
+    result = []
+    for some in np.array_split(rays, 20):
         with np.errstate(divide="ignore"):
-            distance = heights / (normals @ ray)
-        beside = distance[:, None] * ray - surfels.positions
-        inside = sum((np.einsum("nk,nk->n", beside, a) / np.einsum("nk,nk->n", a, a)) ** 2 for a in axes)
-        result[number] = ((inside <= 1) & (distance > 0)).any()
-    return result
+            distances = heights / (some @ normals.T)
+        inside = 0
+        for axis in axes:
+            beside = distances * (some @ axis.T) - np.einsum("nk,nk->n", surfels.positions, axis)
+            inside = inside + (beside / np.einsum("nk,nk->n", axis, axis)) ** 2
+        result.append(((inside <= 1) & (distances > 0)).any(axis=1))
+    return np.concatenate(result)
 
 
 def test_there_is_no_hole_while_blocks_are_missing(many_portions, monkeypatch):

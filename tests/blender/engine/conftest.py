@@ -192,6 +192,26 @@ def switch_to_cycles(scene):
 
 
 @pytest.fixture
+def switch_to_eevee(scene):
+    """switch_to_eevee(samples, has_shadows) makes the next picture one of EEVEE.
+
+    In software its shadow maps take a second a sample, and its map of the world two.
+    """
+
+    def switch(samples=1, has_shadows=False):
+        scene.render.engine = "BLENDER_EEVEE" if bpy.app.version >= (5, 0) else "BLENDER_EEVEE_NEXT"
+        scene.eevee.taa_render_samples, scene.eevee.use_shadows = samples, has_shadows
+        scene.eevee.shadow_pool_size, scene.eevee.shadow_resolution_scale = "16", 0.25
+        assert scene.world is None, "give this test's world the smallest map too"
+        black = scene.world = bpy.data.worlds.new("black")
+        black.color, black.probe_resolution = (0, 0, 0), "128"
+        if black.node_tree:
+            black.node_tree.nodes["Background"].inputs["Color"].default_value = (0, 0, 0, 1)
+
+    return switch
+
+
+@pytest.fixture
 def assert_same_picture():
     """assert_same_picture(a, b, ties): equal within 1e-4, except for at most `ties` pixels at splats' edges."""
 

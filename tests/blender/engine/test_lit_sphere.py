@@ -112,13 +112,9 @@ def test_a_lit_sphere_is_cycles_sphere(name, material, light_up, assert_as_in_ot
 
 
 @pytest.mark.parametrize("name", ALSO_IN_EEVEE)
-def test_a_lit_sphere_is_eevees_sphere(name, scene, light_up, assert_as_in_other_engine):
-    def switch_to_eevee():
-        scene.render.engine = "BLENDER_EEVEE" if bpy.app.version >= (5, 0) else "BLENDER_EEVEE_NEXT"
-        scene.eevee.taa_render_samples = 8
-
+def test_a_lit_sphere_is_eevees_sphere(name, light_up, assert_as_in_other_engine, switch_to_eevee):
     light_up(name, "plastic")
-    assert_as_in_other_engine(switch_to_eevee)
+    assert_as_in_other_engine(lambda: switch_to_eevee(samples=8))
 
 
 def blocks(picture):

@@ -215,7 +215,7 @@ def test_positions_are_cycles_positions(layer, add_camera, add_sheet, passes, cy
     assert not theirs["ViewLayer.Position"][empty].any()
 
 
-def test_the_shadow_is_eevees_shadow(scene, layer, add_camera, add_sheet, passes):
+def test_the_shadow_is_eevees_shadow(scene, layer, add_camera, add_sheet, passes, switch_to_eevee):
     """Two thirds of the light come from a sun that casts shadows, the rest from one that casts none.
 
     So the pass is 1/3 in the shadow of an object out of view, and 1 elsewhere, also where nothing is seen.
@@ -237,8 +237,7 @@ def test_the_shadow_is_eevees_shadow(scene, layer, add_camera, add_sheet, passes
         surfels.hide_render = True
         bpy.ops.mesh.primitive_plane_add(size=side, location=surfels.location)
         bpy.context.object.data.materials.append(bpy.data.materials.new("grey"))
-    scene.render.engine = "BLENDER_EEVEE" if bpy.app.version >= (5, 0) else "BLENDER_EEVEE_NEXT"
-    scene.eevee.taa_render_samples = 1
+    switch_to_eevee(has_shadows=True)
     theirs = passes()["ViewLayer.Shadow"]
     for shadow in (ours, theirs):
         in_shadow, beside = (np.abs(shadow - share).max(axis=2) < 0.02 for share in (1 / 3, 1))
