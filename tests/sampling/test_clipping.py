@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 import trimesh
+from scipy.spatial import cKDTree
 
 from splat_addon.clip_lines import kept
 from splat_addon.sampling import (
@@ -37,16 +38,15 @@ def shown(surfels):
 
 def bare_share(surfels, points, normals):
     """The share of (n, 3) points of the surface that no splat shows."""
-    lines, reflex = surfels.clip_lines()
-    u, v = (axis.astype(float) for axis in surfels.half_axes())
-    z, bare = surfels.geometric_normals(), 0
-    for point, normal in zip(points, normals, strict=True):
-        offset = point - surfels.origin - surfels.positions
-        q = np.stack([(offset * a).sum(1) / (a * a).sum(1) for a in (u, v)], axis=1)
-        near = ((q * q).sum(1) <= 1) & (np.abs((offset * z).sum(1)) < 0.2 * surfels.radius) & (np.abs(z @ normal) > 0.8)
-        at = np.flatnonzero(near)
-        bare += not kept(q[at], lines[at], reflex[at]).any()
-    return bare / len(points)
+    (lines, reflex), centres, z = surfels.clip_lines(), surfels.origin + surfels.positions, surfels.geometric_normals()
+    near = cKDTree(centres).query_ball_point(points, 1.1 * surfels.radius.max())
+    point, row = np.repeat(np.arange(len(points)), list(map(len, near))), np.concatenate(near).astype(int)
+    offset = points[point] - centres[row]
+    axes = (axis.astype(float)[row] for axis in surfels.half_axes())
+    q = np.stack([(offset * a).sum(axis=1) / (a * a).sum(axis=1) for a in axes], axis=1)
+    shows = ((q * q).sum(axis=1) <= 1) & (np.abs((offset * z[row]).sum(axis=1)) < 0.2 * surfels.radius[row])
+    shows &= (np.abs((z[row] * normals[point]).sum(axis=1)) > 0.8) & kept(q, lines[row], reflex[row])
+    return np.count_nonzero(np.bincount(point[shows], minlength=len(points)) == 0) / len(points)
 
 
 def on_surface(mesh, count=1500):

@@ -48,7 +48,7 @@ def test_rough_surfaces_stick_out_less_and_stay_covered(armadillo):
     """Half of what splats stick out of the hull of a scan, whose triangles are smaller than they are, is gone."""
     from scipy.spatial import cKDTree
 
-    fine = sample_mesh(armadillo, resolution=512)
+    fine = sample_mesh(armadillo, resolution=256)
     tree, normals = cKDTree(fine.positions + fine.origin), fine.geometric_normals()
     outside = []
     for options in (EDGES, FITTED):

@@ -28,6 +28,18 @@ def made(points, normals=None, **options):
     return surfels_from_points(points, normals, isolated="keep", **{"crease_angle": ANGLE, **options})
 
 
+@pytest.fixture(scope="module")
+def of_cube(cube):
+    """The surfels of the cube's bare points, and the report of them."""
+    return made(cube[0])
+
+
+@pytest.fixture(scope="module")
+def of_given_normals(cube):
+    """The surfels of the cube's points with their normals."""
+    return made(*cube)[0]
+
+
 def line_distances(surfels):
     """(N,) object units from each centre to the nearest line that cuts its splat, infinite without one."""
     (lines, _), scales = surfels.clip_lines(), surfels.scales.astype(float)
@@ -41,40 +53,39 @@ def to_edge(points):
     return np.sort(np.minimum(np.abs(points), np.abs(1 - points)), axis=1)[:, 1]
 
 
-def test_lines_lie_on_the_edges_of_a_cube(cube):
+def test_lines_lie_on_the_edges_of_a_cube(cube, of_cube):
     """Stored directions and cuts are rounded to 1e-4, and neighbours just beyond an edge lie on both planes."""
     points, _ = cube
-    distance = line_distances(made(points)[0])
+    distance = line_distances(of_cube[0])
     found = np.isfinite(distance)
     off = np.abs(distance - to_edge(points))[found] / SPACING
     assert np.percentile(off, 95) < 0.02
     assert (off > 0.25).mean() < 0.005
 
 
-def test_nearly_every_splat_at_an_edge_ends_there(cube):
+def test_nearly_every_splat_at_an_edge_ends_there(cube, of_cube):
     points, _ = cube
-    surfels, report = made(points)
+    surfels, report = of_cube
     at_edge = to_edge(points) < 0.5 * SPACING
     assert surfels.is_cut()[at_edge].mean() > 0.95
     assert report.creases == surfels.is_cut().sum()
     assert any("edges at which" in note for note in report.notes())
 
 
-def test_normals_at_an_edge_are_those_of_their_own_side(cube):
+def test_normals_at_an_edge_are_those_of_their_own_side(cube, of_cube):
     points, normals = cube
     at_edge = to_edge(points) < 0.5 * SPACING
     before, after = (
-        np.degrees(np.arccos(np.clip((made(points, crease_angle=a)[0].normals * normals).sum(axis=1), -1, 1)))[at_edge]
-        for a in (None, ANGLE)
+        np.degrees(np.arccos(np.clip((surfels.normals * normals).sum(axis=1), -1, 1)))[at_edge]
+        for surfels in (made(points, crease_angle=None)[0], of_cube[0])
     )
     assert np.median(before) > 20
     assert np.percentile(after, 95) < 1
 
 
-def test_no_splat_sticks_out_of_a_cube(cube):
+def test_no_splat_sticks_out_of_a_cube(cube, of_given_normals):
     """Places in each splat that its lines keep lie on the cube."""
-    points, normals = cube
-    surfels, _ = made(points, normals)
+    points, surfels = cube[0], of_given_normals
     (lines, reflex), (x, y) = surfels.clip_lines(), surfels.half_axes()
     out, total = 0, 0
     for u, v in np.random.default_rng(2).uniform(-0.7, 0.7, (40, 2)):
@@ -87,27 +98,26 @@ def test_no_splat_sticks_out_of_a_cube(cube):
     assert total > 0.9 * 40 * len(points)
 
 
-def test_the_faces_of_a_cube_stay_covered_up_to_the_edges(cube):
-    points, _ = cube
-    surfels, _ = made(points)
+def test_the_faces_of_a_cube_stay_covered_up_to_the_edges(of_cube):
+    surfels, _ = of_cube
     (lines, reflex), (x, y) = surfels.clip_lines(), surfels.half_axes()
     at = surfels.origin + surfels.positions
     random = np.random.default_rng(3).random((1500, 2)) * (1, 2 * SPACING)
     probes = np.column_stack([random, np.ones(len(random))])
-    covered = 0
+    covered, on_top = 0, np.flatnonzero(np.abs(surfels.normals[:, 2]) > 0.99)
     for probe in probes:
-        away = probe - at
-        near = np.flatnonzero((np.abs(away).max(axis=1) < 4 * SPACING) & (np.abs(surfels.normals[:, 2]) > 0.99))
-        places = [(away[near] * axis[near]).sum(axis=1) / (axis[near] ** 2).sum(axis=1) for axis in (x, y)]
+        near = on_top[np.abs(probe - at[on_top]).max(axis=1) < 4 * SPACING]
+        away = probe - at[near]
+        places = [(away * axis[near]).sum(axis=1) / (axis[near] ** 2).sum(axis=1) for axis in (x, y)]
         places = np.stack(places, axis=1)
         covered += (kept(places, lines[near], reflex[near]) & (np.square(places).sum(axis=1) <= 1)).any()
     assert covered > 0.998 * len(probes)
 
 
-def test_a_concave_edge_clips_both_sides(cube):
+def test_a_concave_edge_clips_both_sides(cube, of_cube):
     """The same cube seen from within has concave edges: the lines are the same."""
-    points, _ = cube
-    outside, inside = (line_distances(made(points, viewpoint=eye)[0]) for eye in (None, (0.5, 0.5, 0.5)))
+    of_inside, _ = made(cube[0], viewpoint=(0.5, 0.5, 0.5))
+    outside, inside = (line_distances(surfels) for surfels in (of_cube[0], of_inside))
     assert np.allclose(outside[np.isfinite(outside)], inside[np.isfinite(outside)], atol=0.01 * SPACING)
 
 
@@ -144,10 +154,8 @@ def test_smooth_surfaces_stay_as_they_are(request, shape, noise):
     assert surfels.clip_line is None and surfels.clip_line_2 is None
 
 
-def test_given_normals_stay(cube):
-    points, normals = cube
-    surfels, _ = made(points, normals)
-    assert np.allclose(surfels.normals, normals)
+def test_given_normals_stay(cube, of_given_normals):
+    assert np.allclose(of_given_normals.normals, cube[1])
 
 
 def test_without_the_option_nothing_is_clipped(cube):
