@@ -2,7 +2,7 @@
 """Instances of one kind are looked at as arrays and drawn by one call, and pictures are as if they were not."""
 
 import math
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ from splat_addon.rendering import Camera, Light, Renderer, Scene, Settings, look
 from splat_addon.rendering.culling.backs import show_backs
 from splat_addon.rendering.detail import steps
 from splat_addon.rendering.plan.batches import batches
-from splat_addon.rendering.scene import Instance, Material, PolygonInstance
+from splat_addon.rendering.scene import Instance, Material, PolygonInstance, placed_at
 from splat_addon.rendering.view import build_view
 from splat_addon.sampling import TriangleMesh, sample_mesh
 
@@ -56,6 +56,29 @@ def test_the_table_has_what_each_instance_says(shapes):
         assert table.radii[row] == placed.radius and table.counts[row] == len(placed.shape)
     assert [kind.count for kind in table.kinds] == [6] * 4
     assert {kind.placed.materials for kind in table.kinds} == {(RED,), (GREEN,)}
+
+
+def test_instances_that_are_placed_together_are_those_made_one_by_one(shapes):
+    surfels = Instance(shapes["surfels"], materials=(RED,), name="a", light_set=3)
+    polygons = PolygonInstance(shapes["polygons"], materials=(GREEN,), index=7, is_holdout=True)
+    assert surfels.stretches.tolist() == [1, 1, 1]  # what is kept of one is not that of the others
+    which, matrices = [surfels, polygons, surfels], np.eye(4) * np.array([2.0, 3.0, 4.0])[:, None, None]
+    for one, matrix, made in zip(which, matrices, placed_at(which, matrices), strict=True):
+        alone = replace(one, matrix_world=matrix)
+        assert type(made) is type(one) and not made.matrix_world.flags.writeable
+        assert made.stretches.tolist() == alone.stretches.tolist()
+        for name in (each.name for each in fields(one) if each.name != "matrix_world"):
+            assert getattr(made, name) is getattr(alone, name) or getattr(made, name) == getattr(alone, name)
+        assert np.array_equal(made.matrix_world, alone.matrix_world)
+    assert placed_at([], []) == []
+
+
+@pytest.mark.parametrize("number", [math.nan, math.inf, 2e38])
+def test_a_place_that_none_may_have_is_refused_among_others(shapes, number):
+    matrices = np.tile(np.eye(4), (3, 1, 1))
+    matrices[1, 0, 3] = number
+    with pytest.raises(ValueError, match="matrix_world must be"):
+        placed_at([Instance(shapes["surfels"])] * 3, matrices)
 
 
 def test_part_of_a_table_is_the_table_of_that_part(shapes):

@@ -11,7 +11,9 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from functools import partial
 from types import SimpleNamespace
 from typing import NamedTuple
 
@@ -20,6 +22,7 @@ import numpy as np
 
 from ...rendering import Instance, Material, NormalTexture, PolygonInstance, Polygons, SurfaceTexture
 from ...rendering.detail.levels import replaced
+from ...rendering.scene import Placed, placed_at
 from ...sampling import (
     STRETCHED_SHARE,
     DeformingSurfels,
@@ -56,26 +59,28 @@ _TOO_COARSE, _TOO_FINE = 1.26, 2.5
 _UNSEEN_RESOLUTION = 64
 
 
-class Place(NamedTuple):
-    """One place of a mesh. fields: of its instance, by name. form: how it is rendered, see `form_of`. detail: of its
-    object."""
+class Manner(NamedTuple):
+    """What is the same at many places of a mesh. fields: of its instances, by name. form: how it is rendered, see
+    `form_of`. detail: of its object."""
 
-    matrix: np.ndarray
     fields: dict
     form: Form
     detail: float
 
-    def of_instance(self, materials: tuple[Material, ...], spacing: float) -> dict:
-        """The fields of an instance at this place. spacing: of its surfels, in units of the object."""
-        placed = {"matrix_world": self.matrix, "materials": materials, "split_distance": self.form.split_distance}
-        if self.form.split_pixels is not None:
-            # None: a matrix of zeros leaves nothing to see
-            placed["split_length"] = spacing * _stretch(self.matrix) / self.form.split_pixels or None
-        return placed | self.fields
+
+class Place(NamedTuple):
+    """One place of a mesh. matrix: (4, 4) float64."""
+
+    matrix: np.ndarray
+    manner: Manner
+
+    @property
+    def form(self) -> Form:
+        return self.manner.form
 
 
 @dataclass(eq=False)
-class _LiveMesh:
+class LiveMesh:
     """One evaluated mesh, with all its places. said: sentences about its materials and its object. bends: whether its
     object has shape keys or modifiers that deform it.
 
@@ -127,7 +132,33 @@ class _LiveMesh:
     @property
     def detail(self) -> float:
         """The highest detail that any of its places requests."""
-        return max(place.detail for place in self.sampled_at)
+        return max({place.manner.detail for place in self.sampled_at})
+
+    def be_transparent(self) -> None:
+        """Let places of a transparent mesh be in the form that it needs."""
+        forms = {id(place.manner): place.manner for place in self.places}
+        forms = {key: manner._replace(form=manner.form.of_transparent) for key, manner in forms.items()}
+        self.places = [place._replace(manner=forms[id(place.manner)]) for place in self.places]
+
+    def placed(self, made: Callable[..., Placed], places: list[Place]) -> list[Placed]:
+        """Instances at places, of which some of the materials may be holdouts. made: makes one of
+        them from its fields, once for each manner."""
+        parts, which, matrices = {}, [], []
+        for matrix, manner in places:
+            if id(manner) not in parts:
+                common = {"materials": self.materials, "split_distance": manner.form.split_distance} | manner.fields
+                parts[id(manner)] = [(part, manner) for part in with_holes(made(**common), self.held)]
+            for part in parts[id(manner)]:
+                which.append(part)
+                matrices.append(matrix)
+        instances = placed_at([part for part, _ in which], np.array(matrices))
+        return [self._split(one, manner.form.split_pixels) for one, (_, manner) in zip(instances, which, strict=True)]
+
+    def _split(self, placed: Placed, pixels: float | None) -> Placed:
+        if pixels is None:
+            return placed
+        # None: a matrix of zeros leaves nothing to see
+        return replace(placed, split_length=self.spacing * _stretch(placed.matrix_world) / pixels or None)
 
     def kept_textures(self) -> tuple[SurfaceTexture | None, ...]:
         self.textures = kept_textures(self.textures, self.content.triangles.surfaces)
@@ -159,9 +190,9 @@ class LiveMeshes:
     """
 
     def __init__(self):
-        self._kept: dict[tuple, _LiveMesh] = {}
+        self._kept: dict[tuple, LiveMesh] = {}
         self._names: dict[tuple, tuple] = {}
-        self._frame: dict[tuple, _LiveMesh] = {}
+        self._frame: dict[tuple, LiveMesh] = {}
         self._changed: set[str] | None = None
         self._images: dict = {}
         self.counts: Counter = Counter()
@@ -175,26 +206,27 @@ class LiveMeshes:
         """Read textures again after an image or a material was edited."""
         self._images.clear()
 
-    def add(
+    def of(
         self,
         evaluated: bpy.types.Object,
         owner: bpy.types.Object,
-        place: Place,
+        form: Form,
         override: bpy.types.Material | None = None,
-    ) -> None:
-        """Add an entry of `depsgraph.object_instances` that is a mesh with faces; it is read while the entry is valid.
+    ) -> LiveMesh:
+        """The mesh with faces of an entry of `depsgraph.object_instances`, to which places are added; it is read while
+        the entry is valid.
 
-        override: the material override of this view layer.
+        form: how the entry is rendered. override: the material override of this view layer.
         """
-        key = *mesh_key(evaluated), override and override.original.session_uid, place.form.split_group
+        key = *mesh_key(evaluated), override and override.original.session_uid, form.split_group
         if key not in self._frame:
-            live = self._kept.setdefault(self._lasting_key(evaluated, place.form.split_group), _LiveMesh())
+            live = self._kept.setdefault(self._lasting_key(evaluated, form.split_group), LiveMesh())
             live.places, live.owner = [], owner.name
             if live.key != key or self._changed is None or evaluated.data.name_full in self._changed:
-                self._read(live, evaluated, place.form.split_group, override)
+                self._read(live, evaluated, form.split_group, override)
                 live.key = key
             self._frame[key] = live
-        self._frame[key].places.append(place)
+        return self._frame[key]
 
     def instances(
         self, depsgraph: bpy.types.Depsgraph, density: dict[str, float], texture_mapped: bool, notes
@@ -202,10 +234,12 @@ class LiveMeshes:
         """All instances added to this frame; the places of one mesh share its surfels or polygons."""
         sampled, drawn = [], []
         for live in self._frame.values():
+            if not live.places:
+                continue
             for sentence in (*live.content.notes, *live.said):
                 notes.add(sentence)
             if is_transparent(live.content.triangles):
-                live.places = [place._replace(form=place.form.of_transparent) for place in live.places]
+                live.be_transparent()
             try:
                 if live.sampled_at and len(live.sampled_part):
                     sampled += self._sampled_instances(live, depsgraph, density, texture_mapped)
@@ -216,7 +250,7 @@ class LiveMeshes:
         self._kept = {name: live for name, live in self._kept.items() if name in self._names}
         return sampled, drawn
 
-    def _sampled_instances(self, live: _LiveMesh, depsgraph, density, texture_mapped: bool) -> list[Instance]:
+    def _sampled_instances(self, live: LiveMesh, depsgraph, density, texture_mapped: bool) -> list[Instance]:
         sampled = self._sampled(live, depsgraph, finer(density, live.detail), texture_mapped)
         if live.shown is None or live.shown[0] is not sampled:
             whole = joined_at_edges(sampled, *live.parts, live.spacing) if live.parts else sampled
@@ -226,16 +260,9 @@ class LiveMeshes:
         textures = live.kept_textures() if sampled.has_uvs else ()
         self.counts["meshes"] += 1
         self.counts["surfels"] += len(live.shown[1])
-        return [
-            part
-            for place in live.sampled_at
-            for part in with_holes(
-                Instance(live.shown[1], textures=textures, **place.of_instance(live.materials, live.spacing)),
-                live.held,
-            )
-        ]
+        return live.placed(partial(Instance, live.shown[1], textures=textures), live.sampled_at)
 
-    def _polygon_instances(self, live: _LiveMesh, notes) -> list[PolygonInstance]:
+    def _polygon_instances(self, live: LiveMesh, notes) -> list[PolygonInstance]:
         mesh = live.drawn_part
         if live.drawn is None or not have_same_values(live.drawn[0], mesh):
             live.drawn = mesh, mesh_polygons(mesh)
@@ -245,13 +272,9 @@ class LiveMeshes:
             notes.add(sentence)
         looked_up = {"textures": live.kept_textures(), "normal_maps": live.kept_normal_maps()}
         return [
-            part
+            instance
             for shape in live.drawn[1]
-            for place in live.drawn_at
-            for part in with_holes(
-                PolygonInstance(shape, **looked_up, **place.of_instance(live.materials, live.spacing)),
-                live.held,
-            )
+            for instance in live.placed(partial(PolygonInstance, shape, **looked_up), live.drawn_at)
         ]
 
     def _lasting_key(self, evaluated: bpy.types.Object, group: str) -> tuple:
@@ -266,7 +289,7 @@ class LiveMeshes:
         self._names[(*name, number)] = name
         return (*name, number)
 
-    def _read(self, live: _LiveMesh, evaluated: bpy.types.Object, group: str, override) -> None:
+    def _read(self, live: LiveMesh, evaluated: bpy.types.Object, group: str, override) -> None:
         # repeated each frame, because the mesh itself is not read each frame
         live.said = list(passed_over.of_object(evaluated.original))
         notes = SimpleNamespace(add=live.said.append)
@@ -282,7 +305,7 @@ class LiveMeshes:
             live.held = held_slots(slots)
 
     def _sampled(
-        self, live: _LiveMesh, depsgraph: bpy.types.Depsgraph, density: dict[str, float], texture_mapped: bool
+        self, live: LiveMesh, depsgraph: bpy.types.Depsgraph, density: dict[str, float], texture_mapped: bool
     ) -> Surfels:
         """The sampling of a mesh. Raises ValueError with a sentence if it cannot be sampled."""
         if texture_mapped != live.texture_mapped:
@@ -322,17 +345,17 @@ def _stretch(matrix: np.ndarray) -> float:
     return float(np.linalg.norm(matrix[:3, :3], 2))
 
 
-def _by_resolution(live: _LiveMesh, resolution: float, depsgraph) -> float:
+def _by_resolution(live: LiveMesh, resolution: float, depsgraph) -> float:
     # deforming meshes keep their surfels, unless they are stretched too far
     return live.spacing if live.deforming else grid_spacing(live.content.triangles, resolution=resolution)
 
 
-def _by_spacing(live: _LiveMesh, spacing: float, depsgraph) -> float:
+def _by_spacing(live: LiveMesh, spacing: float, depsgraph) -> float:
     stretch = max(map(_stretch, live.matrices))
     return live.kept_if_near(spacing / stretch if stretch > 0 else math.inf)
 
 
-def _by_camera(live: _LiveMesh, pixels: float, depsgraph) -> float:
+def _by_camera(live: LiveMesh, pixels: float, depsgraph) -> float:
     mesh, spacings = live.content.triangles, []
     if live.surface is None or live.surface[0] is not mesh:
         live.surface = mesh, outline(mesh)
@@ -346,7 +369,7 @@ def _by_camera(live: _LiveMesh, pixels: float, depsgraph) -> float:
     return live.spacing if live.deforming else grid_spacing(mesh, resolution=_UNSEEN_RESOLUTION)
 
 
-def _by_itself(live: _LiveMesh, pixels: float, depsgraph) -> float:
+def _by_itself(live: LiveMesh, pixels: float, depsgraph) -> float:
     """The spacing that the most demanding place needs, within the limits of `automatic_density`; kept until it changes
     much."""
     mesh = live.content.triangles

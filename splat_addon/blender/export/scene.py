@@ -17,6 +17,7 @@ from ...faults import sentence_of
 from ...primaries import recolored
 from ...rendering import Instance, Light, Scene
 from ...rendering.detail.levels import replaced
+from ...rendering.scene import placed_at
 from ...streaming import Stream
 from ...surfels import Surfels
 from ..conversion.changed_sources import ChangedSources
@@ -40,9 +41,10 @@ from ..materials.material_override import overridden, override_of
 from ..materials.surface_textures import TextureStore
 from ..mesh_sampling_settings import Form, are_meshes_texture_mapped, density_of_meshes, form_of
 from . import passed_over
+from .entries import kind_of, matrices_of
 from .holdouts import held_slots, with_holes
 from .light_linking import LightSets
-from .live_meshes import LiveMeshes, Place
+from .live_meshes import LiveMesh, LiveMeshes, Manner, Place
 from .object_detail import detail_of
 from .shading import light_of, shading_material
 from .streams import Streams, not_followed
@@ -68,6 +70,12 @@ class Notes:
             raise error
         self.left_out.append(f"{name} is left out: {sentence_of(error)}")
         self.add(self.left_out[-1])
+
+    def add_those_of(self, other: Notes, times: int) -> None:
+        """Add what was said of one thing for that many like it."""
+        self.left_out += other.left_out * times
+        for sentence, count in other.counts.items():
+            self.add(sentence, count * times)
 
     def sentences(self) -> list[str]:
         """One sentence each, with its count if it occurred more than once."""
@@ -161,12 +169,8 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
         notes.add(sentence)
     lights, light_sets = _lights(depsgraph, notes)
     things = _Things(depsgraph, store, live_meshes, light_sets, notes)
-    for entry in depsgraph.object_instances:
-        if entry.show_self and depsgraph.view_layer_eval.use_solid and _is_seen(entry, depsgraph, notes):
-            try:
-                things.add(entry)
-            except Exception as error:
-                notes.leave_out(entry.object.name, error)
+    if depsgraph.view_layer_eval.use_solid:
+        things.add_all()
     for sentence in store.changed_sources.sentences(things.made, depsgraph):
         notes.add(sentence)
     if older := sorted(each.name for each in things.made if not np.array_equal(since_written(each.data), np.eye(3))):
@@ -185,6 +189,23 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
     except Exception as error:
         notes.leave_out(f"The world {world.name!r}", error)
         return scene, notes
+
+
+@dataclass(eq=False)
+class _Kind:
+    """What entries show that differ in their places only.
+
+    shows: whether it may be visible. surfels: instances of those that are surfels, placed in the space of an entry.
+    mesh: the one that it shows, in some manner. notes: on one entry. count: how many entries there are.
+    """
+
+    name: str
+    shows: bool = False
+    surfels: list[Instance] = field(default_factory=list)
+    mesh: LiveMesh | None = None
+    manner: Manner | None = None
+    notes: Notes = field(default_factory=Notes)
+    count: int = 0
 
 
 class _Things:
@@ -209,38 +230,92 @@ class _Things:
         self._override = override_of(depsgraph)
         self._stood_in = sources_in(depsgraph.scene.original)
 
-    def add(self, entry: bpy.types.DepsgraphObjectInstance) -> None:
-        """Add a visible entry. Raises ValueError with a sentence if it cannot be drawn."""
-        object_, what = entry.object, _content(entry)
+    def add_all(self) -> None:
+        """Add all entries."""
+        matrices = matrices_of(self._depsgraph)
+        are_finite = np.isfinite(matrices).all(axis=(1, 2)).tolist()
+        kinds: dict[tuple, _Kind] = {}
+        surfels: list[tuple[_Kind, int]] = []
+        for row, entry in enumerate(self._depsgraph.object_instances):
+            if not entry.show_self:
+                continue
+            key = kind_of(entry)
+            if key not in kinds:
+                kinds[key] = self._kind(entry)
+            kind = kinds[key]
+            if kind.shows and not are_finite[row]:
+                self._leave_out(kind.name, matrices[row])
+                continue
+            kind.count += 1
+            if kind.mesh is not None:
+                kind.mesh.places.append(Place(matrices[row], kind.manner))
+            if kind.surfels:
+                surfels.append((kind, row))
+        for kind in kinds.values():
+            self._notes.add_those_of(kind.notes, kind.count)
+        self._place(surfels, matrices)
+
+    def _leave_out(self, name: str, matrix: np.ndarray) -> None:
+        try:
+            finite_matrix(matrix)
+        except ValueError as error:
+            self._notes.leave_out(name, error)
+
+    def _place(self, surfels: list[tuple[_Kind, int]], matrices: np.ndarray) -> None:
+        """Make the instances of surfels. surfels: kinds, and rows of their matrices."""
+        parts = [(part, row) for kind, row in surfels for part in kind.surfels]
+        try:
+            self.surfels = _placed(parts, matrices)
+        except ValueError:  # of some of them, which are found
+            for kind, row in surfels:
+                try:
+                    self.surfels += _placed([(part, row) for part in kind.surfels], matrices)
+                except ValueError as error:
+                    self._notes.leave_out(kind.name, error)
+
+    def _kind(self, entry: bpy.types.DepsgraphObjectInstance) -> _Kind:
+        """The kind of an entry, whose meshes are read while the entry is valid."""
+        kind = _Kind(entry.object.name)
+        if _is_seen(entry, self._depsgraph, kind.notes):
+            try:
+                self._fill(kind, entry)
+            except Exception as error:
+                kind.notes.leave_out(kind.name, error)
+        return kind
+
+    def _fill(self, kind: _Kind, entry: bpy.types.DepsgraphObjectInstance) -> None:
+        """Find what an entry shows. Raises ValueError with a sentence if it cannot be drawn."""
+        object_, what, notes = entry.object, _content(entry), kind.notes
         if not what:
             if object_.type in _NOT_DRAWN and not shows_as_points(object_.original):
-                self._notes.add(_not_drawn(object_))
+                notes.add(_not_drawn(object_))
             return
-        matrix = finite_matrix(entry.matrix_world)
+        kind.shows = True
+        owner = owner_of(entry)
         fields = {
             "light_set": self._light_sets.of_instance(entry),
             "casts_shadow": object_.visible_shadow,
             "may_change": may_change(entry),
             "name": object_.name,
             "index": object_.pass_index,
-            "is_holdout": owner_of(entry).holdout_get(view_layer=self._depsgraph.view_layer),
+            "is_holdout": owner.holdout_get(view_layer=self._depsgraph.view_layer),
         }
         if {"surfels", "shown"} & {*what}:
-            rest = self._depsgraph, matrix, fields, self._store, self._notes, self._override
-            stream = _stream_of(object_.original, self._store, self._notes)
+            rest = self._depsgraph, fields, self._store, notes, self._override
+            stream = _stream_of(object_.original, self._store, notes)
             if stream is not None:
-                self.surfels += _streamed(object_, stream, *rest)
+                kind.surfels += _streamed(object_, stream, *rest)
                 return
             self.made.add(object_.original)
-            for kind in what:
-                if kind in ("surfels", "shown"):
-                    self.surfels += _instances(object_, self._kept(entry, kind), *rest)
-        owner = owner_of(entry)
+            for each in what:
+                if each in ("surfels", "shown"):
+                    kind.surfels += _instances(object_, self._kept(entry, each), *rest)
         form = form_of(entry, self._depsgraph.scene) if "faces" in what else _NO_FORM
         if form.kind != "HIDDEN" and not any(is_stood_in(each, self._stood_in) for each in asked_of(entry)):
-            self._live_meshes.add(object_, owner, Place(matrix, fields, form, detail_of(owner)), self._override)
+            kind.mesh = self._live_meshes.of(object_, owner, form, self._override)
+            kind.manner = Manner(fields, form, detail_of(owner))
         if "points" in what:
-            self._notes.add(_BARE_POINTS)
+            notes.add(_BARE_POINTS)
 
     def _kept(self, entry: bpy.types.DepsgraphObjectInstance, kind: str) -> tuple[Surfels | None, int, int]:
         """What the store has of an entry's surfels, or of those that are shown as points."""
@@ -340,12 +415,17 @@ def _content(entry: bpy.types.DepsgraphObjectInstance) -> tuple[str, ...]:
     return (*(kind for kind in own if kind == "faces"), "shown")
 
 
-def _instances(
-    object_, kept, depsgraph, matrix_world: np.ndarray, fields: dict, store: SurfelStore, notes: Notes, override
-) -> list[Instance]:
-    """The instance of an object that has surfels; none while the surfel store, whose result `kept` is, reads them.
+def _placed(parts: list[tuple[Instance, int]], matrices: np.ndarray) -> list[Instance]:
+    """Instances at the places of entries. parts: placed in the space of an entry, and the row of its matrix."""
+    moved = [matrices[row] @ part.matrix_world if part.stream is not None else matrices[row] for part, row in parts]
+    return placed_at([part for part, _ in parts], np.array(moved))
 
-    Raises ValueError for broken attributes or an unusable matrix.
+
+def _instances(object_, kept, depsgraph, fields: dict, store: SurfelStore, notes: Notes, override) -> list[Instance]:
+    """The instance of an object that has surfels, in its own space; none while the surfel store, whose result `kept`
+    is, reads them.
+
+    Raises ValueError for broken attributes.
     """
     surfels, skipped, strayed = kept
     # a point cloud made by modifiers has no slots of its own
@@ -368,11 +448,11 @@ def _instances(
     if override is not None:
         materials = (shading_material(override, notes),)
         painted = overridden(surfels, override, store.derived, notes)
-        return with_holes(Instance(painted, matrix_world, materials, **fields), held_slots([override]))
+        return with_holes(Instance(painted, materials=materials, **fields), held_slots([override]))
     own = surfels.arrays().keys()
     materials = tuple(shading_material(material, notes, own) for material in slots)
     textures = tuple(store.textures.get(material, notes) for material in slots) if surfels.has_uvs else ()
-    return with_holes(Instance(surfels, matrix_world, materials, textures=textures, **fields), held_slots(slots))
+    return with_holes(Instance(surfels, materials=materials, textures=textures, **fields), held_slots(slots))
 
 
 def _in_working_space(surfels: Surfels, owner: bpy.types.Object, store: SurfelStore) -> Surfels:
@@ -393,9 +473,7 @@ def _stream_of(owner: bpy.types.Object, store: SurfelStore, notes: Notes) -> Str
         return None
 
 
-def _streamed(
-    object_, stream: Stream, depsgraph, matrix_world: np.ndarray, fields: dict, store: SurfelStore, notes, override
-) -> list[Instance]:
+def _streamed(object_, stream: Stream, depsgraph, fields: dict, store: SurfelStore, notes, override) -> list[Instance]:
     """The instance of an object whose surfels are in a file. Its points are relative to the file's origin, of which the
     mesh's offset is what the object's location lacks."""
     if sentence := not_followed(object_.original):
@@ -405,12 +483,12 @@ def _streamed(
     to_origin = np.eye(4)
     to_origin[:3, 3] = offset_of(object_.original.data) - stream.file.origin
     kept = stream.coarsest, 0, 0
-    made = _instances(object_, kept, depsgraph, matrix_world @ to_origin, fields, store, notes, None)
+    made = _instances(object_, kept, depsgraph, fields, store, notes, None)
     if len(made) > 1:
         notes.add(
             f"{object_.name} cuts no hole, as its surfels come from a file and only some of its materials are a Holdout"
         )
-    return [replace(instance, shape=stream.coarsest, stream=stream) for instance in made[:1]]
+    return [replace(instance, shape=stream.coarsest, stream=stream, matrix_world=to_origin) for instance in made[:1]]
 
 
 @contextmanager

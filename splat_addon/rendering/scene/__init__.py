@@ -3,6 +3,16 @@
 
 from .finish import Finish
 from .material import Material, NormalTexture, SurfaceTexture
-from .scene import Instance, Placed, PolygonInstance, Scene
+from .scene import Instance, Placed, PolygonInstance, Scene, placed_at
 
-__all__ = ("Finish", "Instance", "Material", "NormalTexture", "Placed", "PolygonInstance", "Scene", "SurfaceTexture")
+__all__ = (
+    "Finish",
+    "Instance",
+    "Material",
+    "NormalTexture",
+    "Placed",
+    "PolygonInstance",
+    "Scene",
+    "SurfaceTexture",
+    "placed_at",
+)

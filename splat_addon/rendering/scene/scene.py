@@ -6,7 +6,8 @@ Plain values without Blender: `blender/export/scene.py` makes a `Scene` from a d
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import ClassVar
 
@@ -228,6 +229,26 @@ class PolygonInstance(Placed):
     def is_closed(self) -> bool:
         """Like `Placed.is_closed`, but never true with holes, through which backs may be visible."""
         return not self.is_cut_out and super().is_closed
+
+
+def placed_at(placed: Sequence[Placed], matrices: np.ndarray) -> list[Placed]:
+    """Copies of n instances at other places, which are checked together and not one by one.
+
+    placed: the same object for instances that differ in their places only. matrices: (n, 4, 4) `matrix_world` of each.
+    Raises ValueError with a sentence for numbers that no instance may have.
+    """
+    matrices = np.array(matrices, np.float64).reshape(-1, 4, 4)
+    are_usable = (np.abs(matrices) <= MAX_LENGTH).all(axis=(1, 2))
+    for row in np.flatnonzero(~are_usable)[:1]:
+        replace(placed[row], matrix_world=matrices[row])  # raises what is wrong
+    matrices.flags.writeable = False
+    values = {one: {f.name: getattr(one, f.name) for f in fields(one)} for one in set(placed)}
+    made = []
+    for one, matrix in zip(placed, matrices, strict=True):
+        copied = object.__new__(type(one))
+        copied.__dict__.update(values[one], matrix_world=matrix)
+        made.append(copied)
+    return made
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,6 +5,9 @@ import bpy
 import numpy as np
 import pytest
 
+from splat_addon.blender.export import scene as export
+from splat_addon.blender.export.live_meshes import LiveMeshes
+
 
 @pytest.fixture
 def motif(add_camera, add_surfels):
@@ -159,3 +162,40 @@ def test_five_hundred_instances_are_all_drawn(scene, add_camera, add_surfels, ad
     blocks = picture()[..., 3].reshape(20, 4, 25, 4)
     assert np.array_equal(blocks[:, 1:3, :, 1:3], np.ones((20, 2, 25, 2)))
     assert not blocks[:, [0, 3]][..., [0, 3]].any()
+
+
+def test_what_instances_share_is_found_once(scene, motif, add_mesh, add_nodes, monkeypatch):
+    """Of thousands, only the places are read one by one."""
+    triangle = add_mesh("triangle", [(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])
+    corners = np.random.default_rng(2).uniform(-2, 2, (60, 3)).astype(np.float32)
+    for source in (motif, triangle):
+        add_nodes(add_mesh(f"points of {source.name}", corners.tolist(), []), instances_of(source, scale=(2, 1, 1)))
+        source.hide_render = source.hide_viewport = True
+    asked, may_change = [], export.may_change
+    monkeypatch.setattr(export, "may_change", lambda entry: asked.append(entry.object.name) or may_change(entry))
+    found, _ = export.export_scene(bpy.context.evaluated_depsgraph_get(), export.SurfelStore(), LiveMeshes())
+    for placed, source in ((found.surfels, motif), (found.polygons, triangle)):
+        assert {each.name for each in placed} == {source.name}
+        assert np.array_equal([each.matrix_world[:3, 3] for each in placed], corners)
+        assert all(np.array_equal(each.matrix_world[:3, :3], np.diag((2, 1, 1))) for each in placed)
+        assert len({id(each.shape) for each in placed}) == 1
+    assert len(asked) == len(set(asked)) and {motif.name, "triangle"} <= set(asked)
+
+
+def test_meshes_of_one_instancer_are_told_apart(scene, add_mesh, add_nodes):
+    """Blender gives all of them as the same temporary object."""
+
+    def build(tree, start, end):
+        joined = tree.nodes.new("GeometryNodeJoinGeometry")
+        for size in (1.0, 2.0, 3.0):
+            cube, placed = tree.nodes.new("GeometryNodeMeshCube"), tree.nodes.new("GeometryNodeInstanceOnPoints")
+            cube.inputs["Size"].default_value = (size, size, size)
+            tree.links.new(start, placed.inputs["Points"])
+            tree.links.new(cube.outputs["Mesh"], placed.inputs["Instance"])
+            tree.links.new(placed.outputs["Instances"], joined.inputs[0])
+        tree.links.new(joined.outputs[0], end)
+
+    add_nodes(add_mesh("points", [(0, 0, 0), (5, 0, 0)], []), build)
+    found, _ = export.export_scene(bpy.context.evaluated_depsgraph_get(), export.SurfelStore(), LiveMeshes())
+    seen = sorted((float(each.shape.positions.max()), each.matrix_world[0, 3]) for each in found.polygons)
+    assert seen == [(size / 2, x) for size in (1, 2, 3) for x in (0, 5)]
