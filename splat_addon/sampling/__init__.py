@@ -10,7 +10,7 @@ camera needs. `deform` lets surfels follow a mesh; points without faces become s
 from ..images import Image
 from .attributes.surfaces import Channel, NormalMap, Surface, Texture, VertexColors
 from .blocks import Block, joined_blocks, read_block, read_request, sample_block, write_blocks
-from .camera_density import NotSeenError, Outline, camera_spacing, outline
+from .camera_density import NotSeenError, Outline, camera_spacing, least_camera_spacings, outline
 from .deform.deforming import STRETCHED_SHARE, DeformingSurfels
 from .density import grid_spacing, predict_count
 from .edges.borders import DEFAULT_CREASE_ANGLE
@@ -69,6 +69,7 @@ __all__ = [
     "joined",
     "joined_at_edges",
     "joined_blocks",
+    "least_camera_spacings",
     "normal_map_texture",
     "outline",
     "predict_count",

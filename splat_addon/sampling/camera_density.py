@@ -22,6 +22,9 @@ from .sample import sample_mesh
 _OUTLINE_RESOLUTION = 96
 _OUTLINE_REACH = 1.5
 
+#: More than the relative error of what is computed of a few coordinates.
+_ROUNDING = 1e-12
+
 
 class NotSeenError(ValueError):
     """No part of the surface is in the camera's view."""
@@ -75,16 +78,53 @@ def camera_spacing(
     reach = surface.reach * stretch
     x, y, z = linear @ surface.points.T + translation[:, None]
     depth = -z
+    seen = _are_seen(x, y, depth, reach, window, near, is_orthographic)
+    if not seen.any():
+        raise NotSeenError("The camera does not see the object; turn it there, or choose another density.")
+    pixel = _pixel(window, size)
+    distance = 1.0 if is_orthographic else max(float(depth[seen].min()) - reach, near)
+    return pixels * pixel * distance / stretch
+
+
+def least_camera_spacings(
+    surface: Outline,
+    pixels: float,
+    *,
+    objects_to_view: np.ndarray,
+    window: tuple[float, float, float, float],
+    size: tuple[int, int],
+    near: float,
+    is_orthographic: bool,
+) -> np.ndarray:
+    """(n,) numbers that `camera_spacing` is never below, found for many places of a surface at once from a ball around
+    it; infinite where the camera certainly does not see it. objects_to_view: (n, 4, 4); the rest as there."""
+    linear, translation = objects_to_view[:, :3, :3], objects_to_view[:, :3, 3]
+    stretches = np.linalg.svd(linear, compute_uv=False)[:, 0]
+    if not len(surface.points):
+        return np.full(len(linear), np.inf)
+    center = (surface.points.min(axis=0) + surface.points.max(axis=0)) / 2
+    x, y, z = (linear @ center + translation).T
+    reach = (surface.reach + np.linalg.norm(surface.points - center, axis=1).max()) * stretches
+    reach += _ROUNDING * (reach + np.abs((x, y, z)).max(axis=0))
+    distance = 1.0 if is_orthographic else np.maximum(-z - reach, near)
+    with np.errstate(divide="ignore"):
+        least = pixels * _pixel(window, size) * distance / stretches
+    return np.where(_are_seen(x, y, -z, reach, window, near, is_orthographic), least, np.inf)
+
+
+def _pixel(window: tuple[float, float, float, float], size: tuple[int, int]) -> float:
+    left, right, bottom, top = window
+    return min((right - left) / size[0], (top - bottom) / size[1])
+
+
+def _are_seen(x, y, depth, reach, window: tuple[float, float, float, float], near: float, is_orthographic: bool):
+    """(n,) bool: whether something within reach of points may be in the picture."""
     seen = depth > near - reach
     left, right, bottom, top = window
     for across, low, high in ((x, left, right), (y, bottom, top)):
         seen &= _beside(across, depth, low, is_orthographic) > -reach
         seen &= _beside(across, depth, high, is_orthographic) < reach
-    if not seen.any():
-        raise NotSeenError("The camera does not see the object; turn it there, or choose another density.")
-    pixel = min((right - left) / size[0], (top - bottom) / size[1])
-    distance = 1.0 if is_orthographic else max(float(depth[seen].min()) - reach, near)
-    return pixels * pixel * distance / stretch
+    return seen
 
 
 def _beside(across: np.ndarray, depth: np.ndarray, edge: float, is_orthographic: bool) -> np.ndarray:

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from splat_addon.rendering import Camera, look_at
-from splat_addon.sampling import TriangleMesh, camera_spacing, outline
+from splat_addon.sampling import NotSeenError, TriangleMesh, camera_spacing, least_camera_spacings, outline
 
 #: The outline is within 1.5 / 96 of the box's longest edge from the surface.
 REACH = 1.5 / 96
@@ -99,3 +99,26 @@ def test_the_whole_surface_is_within_reach_of_its_outline(armadillo):
 
     surface = outline(armadillo)
     assert cKDTree(surface.points).query(armadillo.positions)[0].max() <= surface.reach
+
+
+@pytest.mark.parametrize("is_orthographic", [False, True])
+def test_the_least_spacings_of_many_places_are_never_above_what_is_found_of_each(ball, is_orthographic):
+    """And what is certainly not seen is not seen."""
+    camera = pinhole((4, 0, 0))
+    if is_orthographic:
+        camera = Camera.orthographic(camera.matrix_world, 4.0, (200, 100))
+    random, shape = np.random.default_rng(3), outline(ball)
+    places = np.tile(np.eye(4), (200, 1, 1))
+    places[:, :3, :3] = random.normal(size=(200, 3, 3)) * 0.3
+    places[:, :3, 3] = random.uniform(-8, 8, (200, 3))
+    picture = {name: getattr(camera, name) for name in ("window", "size", "near", "is_orthographic")}
+    to_view = camera.world_to_view() @ places
+    least, unseen = least_camera_spacings(shape, 2.0, objects_to_view=to_view, **picture), 0
+    for bound, matrix in zip(least, to_view, strict=True):
+        try:
+            assert bound <= camera_spacing(shape, 2.0, object_to_view=matrix, **picture)
+        except NotSeenError:
+            unseen += 1
+        else:
+            assert np.isfinite(bound)
+    assert 0 < np.isinf(least).sum() <= unseen < 200

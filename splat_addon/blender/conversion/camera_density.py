@@ -9,9 +9,9 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-from ...rendering import Panorama
+from ...rendering import Camera, Panorama
 from ...rendering.assembly.panorama_faces import cube_views
-from ...sampling import NotSeenError, Outline, camera_spacing
+from ...sampling import NotSeenError, Outline, camera_spacing, least_camera_spacings
 from ..export.camera import final_camera
 
 
@@ -25,24 +25,53 @@ def without_camera(
     """
     if "pixels" not in density:
         return density
-    camera = final_camera(depsgraph, depsgraph.scene.camera)
-    views = cube_views(camera, 1.0) if isinstance(camera, Panorama) else [camera]
     spacings, unseen = [], None
-    for view in views:
+    for view in _views(depsgraph):
         try:
-            spacings.append(
-                camera_spacing(
-                    surface(),
-                    density["pixels"],
-                    object_to_view=view.world_to_view() @ np.array(matrix_world, np.float64),
-                    window=view.window,
-                    size=view.size,
-                    near=view.near,
-                    is_orthographic=view.is_orthographic,
-                )
-            )
+            to_view = view.world_to_view() @ np.array(matrix_world, np.float64)
+            spacings.append(camera_spacing(surface(), density["pixels"], object_to_view=to_view, **_picture(view)))
         except NotSeenError as error:
             unseen = error
     if not spacings:
         raise unseen
     return {"spacing": min(spacings)}
+
+
+def most_demanding(
+    pixels: float, surface: Outline, matrices: np.ndarray, depsgraph: bpy.types.Depsgraph
+) -> list[np.ndarray]:
+    """Of the places of an object, the one for which `without_camera` finds the smallest spacing, and one that the
+    camera does not see, as far as there are such; the first place if there is no camera. matrices: (n, 4, 4) float64.
+    """
+    try:
+        views = _views(depsgraph)
+    except ValueError:
+        return list(matrices[:1])
+    least = np.full(len(matrices), np.inf)
+    for view in views:
+        from_world = view.world_to_view()
+        to_view = np.array([from_world @ matrix for matrix in matrices])
+        bounds = least_camera_spacings(surface, pixels, objects_to_view=to_view, **_picture(view))
+        least = np.minimum(least, bounds)
+    seen, unseen, smallest = [], list(matrices[np.isinf(least)][:1]), np.inf
+    for row in np.argsort(least, kind="stable").tolist():
+        if least[row] >= smallest or np.isinf(least[row]):
+            break
+        try:
+            spacing = without_camera({"pixels": pixels}, lambda: surface, matrices[row], depsgraph)["spacing"]
+        except NotSeenError:
+            unseen = unseen or [matrices[row]]
+            continue
+        if spacing < smallest:
+            seen, smallest = [matrices[row]], spacing
+    return seen + unseen
+
+
+def _views(depsgraph: bpy.types.Depsgraph) -> list[Camera]:
+    """Flat cameras that see what the scene's camera sees. Raises ValueError if there is none."""
+    camera = final_camera(depsgraph, depsgraph.scene.camera)
+    return cube_views(camera, 1.0) if isinstance(camera, Panorama) else [camera]
+
+
+def _picture(view: Camera) -> dict:
+    return {name: getattr(view, name) for name in ("window", "size", "near", "is_orthographic")}

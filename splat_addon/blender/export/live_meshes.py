@@ -38,7 +38,7 @@ from ...sampling import (
 )
 from ...surfels import OPTIONAL_LAYOUT, Surfels
 from ..conversion.automatic_density import automatic_spacing
-from ..conversion.camera_density import without_camera
+from ..conversion.camera_density import most_demanding, without_camera
 from ..conversion.mesh_conversion import MAX_SURFELS
 from ..geometry.mesh_extraction import ExtractedMesh, Topology, read_mesh, read_topology, slot_materials
 from ..geometry.mesh_polygons import is_transparent, left_out_of_polygons, mesh_polygons
@@ -125,9 +125,9 @@ class LiveMesh:
         return self.parts.near if self.parts else self.content.triangles
 
     @property
-    def matrices(self) -> list[np.ndarray]:
-        """The matrices of the places where it is sampled."""
-        return [place.matrix for place in self.sampled_at]
+    def matrices(self) -> np.ndarray:
+        """(n, 4, 4) the matrices of the places where it is sampled."""
+        return np.array([place.matrix for place in self.sampled_at])
 
     @property
     def detail(self) -> float:
@@ -351,7 +351,7 @@ def _by_resolution(live: LiveMesh, resolution: float, depsgraph) -> float:
 
 
 def _by_spacing(live: LiveMesh, spacing: float, depsgraph) -> float:
-    stretch = max(map(_stretch, live.matrices))
+    stretch = float(np.linalg.svd(live.matrices[:, :3, :3], compute_uv=False).max())
     return live.kept_if_near(spacing / stretch if stretch > 0 else math.inf)
 
 
@@ -359,7 +359,7 @@ def _by_camera(live: LiveMesh, pixels: float, depsgraph) -> float:
     mesh, spacings = live.content.triangles, []
     if live.surface is None or live.surface[0] is not mesh:
         live.surface = mesh, outline(mesh)
-    for matrix in live.matrices:
+    for matrix in most_demanding(pixels, live.surface[1], live.matrices, depsgraph):
         try:
             spacings.append(without_camera({"pixels": pixels}, lambda: live.surface[1], matrix, depsgraph)["spacing"])
         except NotSeenError:
@@ -378,7 +378,8 @@ def _by_itself(live: LiveMesh, pixels: float, depsgraph) -> float:
     shape = projected_area(mesh), grid_spacing(mesh, resolution=1)
     # The detail is already in the pixels, but it also counts if no camera sees the mesh.
     what, detail = (pixels * live.detail, lambda: live.surface[1], *shape), live.detail
-    found = (automatic_spacing(*what, matrix, depsgraph, detail=detail).spacing for matrix in live.matrices)
+    matrices = most_demanding(what[0], live.surface[1], live.matrices, depsgraph)
+    found = (automatic_spacing(*what, matrix, depsgraph, detail=detail).spacing for matrix in matrices)
     return live.kept_if_near(min(found))
 
 
