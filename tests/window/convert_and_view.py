@@ -11,11 +11,25 @@ import bpy
 
 sys.path[:0] = [str(Path(__file__).resolve().parents[2]), str(Path(__file__).resolve().parent)]
 
-from steps import in_view, open_sidebar, play, show_tab, smooth_and_red, view3d  # noqa: E402
+from steps import (  # noqa: E402
+    at_rest,
+    converted,
+    in_view,
+    open_sidebar,
+    play,
+    redrawn,
+    shot,
+    show_tab,
+    smooth_and_red,
+    surfel_objects,
+    view3d,
+    watched,
+)
 
 import splat_addon  # noqa: E402
+from splat_addon.blender.engine import viewport  # noqa: E402
 
-POLL_SECONDS = 0.2
+drawn = []
 
 
 def prepare():
@@ -43,13 +57,10 @@ def adjust():
         bpy.ops.ed.undo_redo()
 
 
-def made():
-    return [owner for owner in bpy.data.objects if owner.name.endswith(" surfels")]
-
-
 def look():
     """Show the rendered view with our engine, and our tab in the sidebar."""
     bpy.context.scene.render.engine = "SURFEL_SPLATTING"
+    bpy.context.scene.surfel_splatting.viewport_samples = 2
     area, _ = view3d()
     area.spaces[0].overlay.show_overlays = False
     area.spaces[0].shading.type = "RENDERED"
@@ -59,21 +70,21 @@ def look():
 def steps():
     """Yields the seconds to wait after each step, and returns the report."""
     prepare()
-    yield 1.0
+    yield from redrawn()
     result = convert()
-    while not made():
-        yield POLL_SECONDS
-    yield 1.0
-    first = len(made()[0].data.vertices)
+    yield from converted()
+    first = len(surfel_objects()[0].data.vertices)
     adjust()
-    yield 2.0
+    yield from redrawn()
     look()
-    yield 4.0
+    yield from at_rest(drawn)
+    shot("view")
     source_hidden = bpy.data.objects["Suzanne"].hide_get()
     report = {"operator": result, "first": first, "source_hidden": source_hidden}
-    report["surfels"] = [len(owner.data.vertices) for owner in made()]
+    report["surfels"] = [len(owner.data.vertices) for owner in surfel_objects()]
     return report
 
 
+viewport.draw = watched(viewport.draw, drawn)
 splat_addon.register()
 play(steps())

@@ -16,7 +16,7 @@ from mathutils import Quaternion
 
 sys.path[:0] = [str(Path(__file__).resolve().parents[2]), str(Path(__file__).resolve().parent)]
 
-from steps import play, view3d  # noqa: E402
+from steps import play, until, view3d  # noqa: E402
 
 import splat_addon  # noqa: E402
 from splat_addon.blender.engine import viewport  # noqa: E402
@@ -25,9 +25,8 @@ from splat_addon.reference import scenes  # noqa: E402
 from splat_addon.rendering import Pace  # noqa: E402
 
 COUNT = 300_000
-PATIENCE = 600  # polls of a tenth of a second
-#: Turns of the view, and the angle of one.
-TURNS, TURN = 6, 0.1
+#: Turns of the view, the angle of one, and the calls between two of them.
+TURNS, TURN, CALLS = 6, 0.1, 4
 
 #: of each call of the view: whether it left a picture unfinished, how many samples are in its sum, and what it shows
 calls = []
@@ -74,11 +73,13 @@ def turn(space, angle):
 
 
 def until_at_rest(samples):
-    for _ in range(PATIENCE):
-        yield 0.1
-        if calls and calls[-1][1] == samples and not calls[-1][0]:
-            return
-    raise TimeoutError(f"the view did not come to rest: {calls[-1][:2] if calls else 'it was not drawn'}")
+    is_at_rest = lambda: calls and calls[-1][1] == samples and not calls[-1][0]  # noqa: E731
+    yield from until(is_at_rest, "the view comes to rest")
+
+
+def some_calls():
+    until_now = len(calls)
+    yield from until(lambda: len(calls) >= until_now + CALLS, f"the view is drawn {CALLS} times")
 
 
 def steps():
@@ -101,11 +102,11 @@ def steps():
     calls.clear()
     for _ in range(TURNS):
         turn(space, TURN)
-        yield 0.3
+        yield from some_calls()
     yield from until_at_rest(2)
     report["turning"] = summary()
     turn(space, -TURNS * TURN)
-    yield 0.3
+    yield from some_calls()
     calls.clear()
     settings.viewport_rate = 0
     yield from until_at_rest(2)
@@ -117,4 +118,4 @@ def steps():
 viewport.Pace = partial(Pace, clock=Clock())
 viewport.draw = watch(viewport.draw)
 splat_addon.register()
-play(steps(), and_quit=True)
+play(steps())

@@ -12,7 +12,7 @@ import bpy
 
 sys.path[:0] = [str(Path(__file__).resolve().parents[2]), str(Path(__file__).resolve().parent)]
 
-from steps import REPORT, in_view, open_sidebar, play, show_tab, view3d  # noqa: E402
+from steps import REPORT, converted, in_view, open_sidebar, play, redrawn, show_tab, view3d  # noqa: E402
 
 import splat_addon  # noqa: E402
 from splat_addon.blender.conversion.mesh_settings import PROPERTY_NAMES  # noqa: E402
@@ -33,26 +33,20 @@ def widths(texts, region) -> dict:
     return {text: blf.dimensions(0, text)[0] / region.width for text in texts}
 
 
-def is_made():
-    return any(owner.name.endswith(" surfels") for owner in bpy.data.objects)
-
-
 def steps():
     """Yields the seconds to wait after each step, and returns the report."""
     scene = bpy.context.scene
     scene.render.resolution_percentage = 15
     click("N: the sidebar", open_sidebar)
-    yield 1.0
+    yield from redrawn()
     click("the tab Surfels", lambda: show_tab("Surfels"))
-    yield 1.0
+    yield from redrawn()
     with in_view():
         click("Convert to Surfels", lambda: bpy.ops.object.surfels_from_mesh("INVOKE_DEFAULT", True))
-    while not is_made():
-        yield 0.5
-    yield 0.5
+    yield from converted()
     with in_view():
         click("Show with Surfel Splatting", bpy.ops.view3d.surfels_show)
-    yield 2.0
+    yield from redrawn()
     with in_view():
         click("F12", bpy.ops.render.render)
     picture = REPORT.with_name(f"{REPORT.stem}_f12.png")
@@ -75,4 +69,4 @@ def steps():
 
 
 splat_addon.register()
-play(steps(), and_quit=True)
+play(steps())

@@ -13,7 +13,7 @@ import bpy
 
 sys.path[:0] = [str(Path(__file__).resolve().parents[2]), str(Path(__file__).resolve().parent)]
 
-from steps import REPORT, in_view, play  # noqa: E402
+from steps import REPORT, in_view, is_modal, play, redrawn, until  # noqa: E402
 
 import splat_addon  # noqa: E402
 from splat_addon.blender.operators import modal_writing  # noqa: E402
@@ -21,7 +21,6 @@ from splat_addon.interchange import write_ply  # noqa: E402
 from splat_addon.reference import scenes  # noqa: E402
 
 COUNT = 100_000
-PATIENCE = 300  # polls of a fifth of a second
 FOLDER = REPORT.with_suffix("")
 
 
@@ -64,22 +63,19 @@ def steps():
             bpy.ops.import_scene.surfels_ply(
                 "INVOKE_DEFAULT", True, filepath=str(FOLDER / "scan.ply"), keeps_in_file=True
             )
-        yield 1.0
+        yield from redrawn()
         press(window, "RET")  # confirms the dialog
-        yield 1.0
+        yield from until(is_modal, "the dialog is confirmed")
         running = [operator.bl_idname for operator in window.modal_operators]
         if name == "cancelled":
             press(window, "ESC")
         else:
             may_end.set()
-        for _ in range(PATIENCE):
-            yield 0.2
-            if not len(window.modal_operators):
-                break
+        yield from until(lambda: not is_modal(), f"the import is {name}")
         may_end.set()
         report[name] = running, files(), [owner.name for owner in bpy.data.objects], len(bpy.data.meshes)
     return report
 
 
 splat_addon.register()
-play(steps(), and_quit=True)
+play(steps())

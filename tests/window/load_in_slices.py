@@ -12,7 +12,7 @@ import bpy
 
 sys.path[:0] = [str(Path(__file__).resolve().parents[2]), str(Path(__file__).resolve().parent)]
 
-from steps import REPORT, in_view, play, view3d  # noqa: E402
+from steps import REPORT, in_view, play, redrawn, until, view3d  # noqa: E402
 
 import splat_addon  # noqa: E402
 from splat_addon.blender.engine import viewport  # noqa: E402
@@ -21,8 +21,6 @@ from splat_addon.reference import scenes  # noqa: E402
 
 COUNT = 1_000_000
 FILE = REPORT.with_suffix(".blend")
-PATIENCE = 600  # polls of a tenth of a second
-SOON = 0.4  # seconds within which some of it has begun
 
 draws = []
 
@@ -55,11 +53,7 @@ def edit():
 
 
 def until_there():
-    for _ in range(PATIENCE):
-        yield 0.1
-        if draws and draws[-1][0] and not draws[-1][1]:
-            return
-    raise TimeoutError(f"the surfels did not arrive: {draws[-1:]}")
+    yield from until(lambda: draws and draws[-1][0] and not draws[-1][1], "the surfels arrive")
 
 
 def steps():
@@ -70,48 +64,48 @@ def steps():
     scene.render.resolution_percentage = 10
     bpy.data.objects.remove(bpy.data.objects["Cube"])
     show()
-    yield 1.0
+    yield from redrawn()
     add()
     draws.clear()
     yield from until_there()
     report = {"draws": list(draws)}
     for _ in range(2):
         edit()
-        yield SOON
+        yield from redrawn()
     for _ in range(2):
         bpy.ops.ed.undo()
-        yield SOON
+        yield from redrawn()
     yield from until_there()
     edit()
-    yield SOON
+    yield from redrawn()
     bpy.data.objects.remove(bpy.data.objects["torus"])
     bpy.ops.outliner.orphans_purge(do_recursive=True)
-    yield SOON
+    yield from redrawn()
     report["removed"] = draws[-1][:2]
     add()
-    yield SOON
+    yield from redrawn()
     bpy.ops.wm.save_as_mainfile(filepath=str(FILE))
     for _ in range(2):
         bpy.ops.wm.open_mainfile(filepath=str(FILE))
-        yield SOON
+        yield from redrawn()
     show("SOLID")
-    yield SOON
+    yield from redrawn()
     show()
-    yield SOON
+    yield from redrawn()
     with in_view():
         bpy.ops.render.render()
     yield from until_there()
     report["reopened"] = draws[-1][:2]
     bpy.ops.wm.open_mainfile(filepath=str(FILE))
-    yield SOON
+    yield from redrawn()
     splat_addon.unregister()
-    yield SOON
+    yield from redrawn()
     splat_addon.register()
     bpy.ops.wm.open_mainfile(filepath=str(FILE))
-    yield SOON
+    yield from redrawn()
     return report
 
 
 viewport.draw = watch(viewport.draw)
 splat_addon.register()
-play(steps(), and_quit=True)
+play(steps())

@@ -5,7 +5,6 @@ test_a_day.py reads the report. Pictures of the window are saved on the way, and
 """
 
 import os
-import subprocess
 import sys
 from pathlib import Path
 
@@ -14,58 +13,48 @@ from mathutils import Quaternion
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-from steps import REPORT, in_view, open_sidebar, play, show_tab, smooth_and_red, view3d
+from steps import (
+    REPORT,
+    at_rest,
+    converted,
+    in_view,
+    open_sidebar,
+    play,
+    redrawn,
+    shot,
+    show_tab,
+    smooth_and_red,
+    surfel_objects,
+    until,
+    view3d,
+    watched,
+)
 
 MODULE = "bl_ext.user_default.surfel_splatting"
 PACKAGE = os.environ["SURFEL_PACKAGE"]
 FILE = REPORT.with_suffix(".blend")
-PATIENCE = 120  # polls of half a second
 #: Samples of the pictures that are compared with each other; the guide's has those of a new scene.
 FEW = 2
 
 drawn = []
 
 
+def extension(path: str):
+    """A module of the installed extension."""
+    return sys.modules[f"{MODULE}.splat_addon.blender.{path}"]
+
+
 def watch_drawing():
-    """Record a view's number of samples whenever the installed extension has drawn it."""
-    viewport = sys.modules[f"{MODULE}.splat_addon.blender.engine.viewport"]
-    draw = viewport.draw
-
-    def noting(engine, *arguments):
-        draw(engine, *arguments)
-        drawn.append(engine.surfel_state.refinement.samples)
-
-    viewport.draw = noting
+    viewport = extension("engine.viewport")
+    viewport.draw = watched(viewport.draw, drawn)
 
 
-def at_rest():
-    """Wait until the view has been drawn again and has all its samples."""
-    drawn.clear()
-    view3d()[0].tag_redraw()
-
-    def is_at_rest():
-        return drawn and drawn[-1] == bpy.context.scene.surfel_splatting.viewport_samples
-
-    yield from until(is_at_rest)
-    yield 0.5
-
-
-def shot(name: str) -> None:
-    """Save a picture of the whole screen, because Blender's own picture of its window is black on OpenGL."""
-    subprocess.run(["import", "-window", "root", REPORT.with_name(f"{REPORT.stem}_{name}.png")], check=True)
-
-
-def surfel_object():
-    """Look up the surfel object each time, because undo and opening a file free Python's references."""
-    return next((o for o in bpy.data.objects if o.name.endswith(" surfels")), None)
-
-
-def until(condition):
-    for _ in range(PATIENCE):
-        yield 0.5
-        if condition():
-            return
-    raise TimeoutError(f"it did not happen: {condition.__name__}")
+def predicted():
+    """Wait until the sidebar has the counts that it predicts, and shows them."""
+    is_waiting = lambda: bpy.app.timers.is_registered(extension("conversion.prediction")._measure_wanted)  # noqa: E731
+    yield from redrawn()
+    yield from until(lambda: not is_waiting(), "the prediction is made")
+    yield from redrawn()
 
 
 def build_scene():
@@ -81,10 +70,6 @@ def build_scene():
     camera.location, camera.rotation_euler = (3.2, -4.2, 2.2), (1.15, 0, 0.65)
     render = bpy.context.scene.render
     render.resolution_x, render.resolution_y = 320, 240
-
-
-def is_converted():
-    return surfel_object() is not None
 
 
 def convert():
@@ -115,7 +100,7 @@ def orbit():
 
 def edit():
     """Turn the surfels in edit mode."""
-    made = surfel_object()
+    [made] = surfel_objects()
     bpy.context.view_layer.objects.active = made
     made.select_set(True)
     with in_view():
@@ -133,7 +118,7 @@ def undo(times: int):
 
 
 def first_x():
-    return round(surfel_object().data.vertices[0].co.x, 4)
+    return round(surfel_objects()[0].data.vertices[0].co.x, 4)
 
 
 def steps():
@@ -143,38 +128,36 @@ def steps():
     watch_drawing()
     build_scene()
     open_sidebar()
-    yield 1.0
+    yield from redrawn()
     bpy.ops.ed.undo_push(message="scene")
     show_tab("Surfels")
-    yield 3.0  # the panel grows by the prediction
+    yield from predicted()
     shot("before")
     convert()
-    yield from until(is_converted)
-    yield 1.0
-    shot("converted")
+    yield from converted()
     look_through_camera()
     show()
-    yield from at_rest()
+    yield from at_rest(drawn)
     shot("guide")
     bpy.context.scene.surfel_splatting.samples = bpy.context.scene.surfel_splatting.viewport_samples = FEW
-    yield from at_rest()
+    yield from at_rest(drawn)
     shot("shown")
 
     orbit()
-    yield from at_rest()
+    yield from at_rest(drawn)
     shot("orbited")
     look_through_camera()
-    yield from at_rest()
+    yield from at_rest(drawn)
     shot("orbited_and_back")
 
     bpy.ops.ed.undo_push(message="shown")
     facts["x"] = [first_x()]
     edit()
     facts["x"].append(first_x())
-    yield from at_rest()
+    yield from at_rest(drawn)
     shot("edited")
     undo(1)
-    yield from at_rest()
+    yield from at_rest(drawn)
     facts["x"].append(first_x())
     shot("undone")
 
@@ -182,38 +165,34 @@ def steps():
     bpy.app.handlers.render_complete.append(lambda *_: rendered.append(True))
     with in_view():
         bpy.ops.render.render("INVOKE_DEFAULT")
-
-    def is_rendered():
-        return bool(rendered)
-
-    yield from until(is_rendered)
-    yield 1.0
+    yield from until(lambda: rendered, "the render ends")
+    yield from redrawn()
     picture = REPORT.with_name(f"{REPORT.stem}_f12.png")
     bpy.data.images["Render Result"].save_render(str(picture))
     for window in list(bpy.context.window_manager.windows)[1:]:
         with bpy.context.temp_override(window=window):
             bpy.ops.wm.window_close()
-    yield from at_rest()
+    yield from at_rest(drawn)
     shot("after_f12")
 
     bpy.ops.wm.save_as_mainfile(filepath=str(FILE))
     bpy.ops.wm.open_mainfile(filepath=str(FILE))
-    yield 1.0
+    yield from redrawn()
     show()
-    yield from at_rest()
+    yield from at_rest(drawn)
     shot("opened_again")
 
     bpy.ops.preferences.addon_disable(module=MODULE)
-    yield 1.0
+    yield from redrawn()
     facts["left"] = [name for name in ("surfel_splatting", "surfel_conversion") if hasattr(bpy.types.Scene, name)]
     bpy.ops.preferences.addon_enable(module=MODULE)
     watch_drawing()
-    yield 1.0
+    yield from redrawn()
     show()
-    yield from at_rest()
+    yield from at_rest(drawn)
     shot("enabled_again")
     facts["engine"] = bpy.context.scene.render.engine
     return facts
 
 
-play(steps(), and_quit=True)
+play(steps())

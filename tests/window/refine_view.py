@@ -12,23 +12,16 @@ import bpy
 
 sys.path[:0] = [str(Path(__file__).resolve().parents[2]), str(Path(__file__).resolve().parent)]
 
-from steps import play, view3d  # noqa: E402
+from steps import play, until, view3d, watched  # noqa: E402
 
 import splat_addon  # noqa: E402
 from splat_addon.blender.engine import viewport  # noqa: E402
 
 SAMPLES = 6
-PATIENCE = 100  # polls of a tenth of a second
+#: Seconds in which a view that has come to rest is to draw nothing.
+IDLE = 1.0
 
 draws = []
-
-
-def counted(draw):
-    def counting(engine, context, depsgraph):
-        draw(engine, context, depsgraph)
-        draws.append(engine.surfel_state.refinement.samples)
-
-    return counting
 
 
 def prepare():
@@ -52,35 +45,32 @@ def prepare():
     area.spaces[0].shading.type = "RENDERED"
 
 
-def at_rest():
-    """Wait until the view is complete, and then for one more second."""
-    for _ in range(PATIENCE):
-        yield 0.1
-        if draws and draws[-1] == SAMPLES:
-            break
-    yield 1.0
+def refined():
+    """Wait until the view is complete, without asking for another drawing."""
+    yield from until(lambda: draws and draws[-1] == SAMPLES, "the view is complete")
 
 
 def steps():
     """Yields the seconds to wait after each step, and returns the report."""
     report = {"samples": SAMPLES}
     prepare()
-    yield from at_rest()
+    yield from refined()
+    yield IDLE  # the window may be drawn once more for another reason
     report["first"] = list(draws)
-    yield 1.0
+    yield IDLE
     report["idle"] = len(draws) - len(report["first"])
     draws.clear()
     bpy.data.objects["Sphere"].location.z += 0.5
-    yield from at_rest()
+    yield from refined()
     report["changed"] = list(draws)
     draws.clear()
     bpy.context.scene.camera.location.x += 0.2
-    yield from at_rest()
+    yield from refined()
     report["moved"] = list(draws)
     return report
 
 
 import_module("splat_addon.rendering.plan.tiles").MAX_TARGET_EDGE = 400
-viewport.draw = counted(viewport.draw)
+viewport.draw = watched(viewport.draw, draws)
 splat_addon.register()
 play(steps())

@@ -11,10 +11,11 @@ from itertools import cycle
 from pathlib import Path
 
 import bpy
+import gpu
 
 sys.path[:0] = [str(Path(__file__).resolve().parents[2]), str(Path(__file__).resolve().parent)]
 
-from steps import in_view, play, view3d  # noqa: E402
+from steps import in_view, play, redrawn, view3d  # noqa: E402
 
 import splat_addon  # noqa: E402
 from splat_addon.blender.engine import final_render  # noqa: E402
@@ -126,7 +127,7 @@ EDIT_KINDS = (move, paint, light, turn_points, update, undo_a_move, add_and_dele
 def steps():
     """Yields the seconds to wait after each step, and returns the report."""
     build_scene()
-    yield 0.5
+    yield from redrawn()
     scene, series, kinds = bpy.context.scene, [], cycle(EDIT_KINDS)
     every = max(FRAMES // EDITS, 1)
     for frame in range(FRAMES):
@@ -140,8 +141,9 @@ def steps():
             series.append({"frame": frame, **figures()})
         yield 0.001
     series.append({"frame": FRAMES, **figures()})
-    return {"frames": FRAMES, "edits": min(EDITS, FRAMES), "series": series}
+    backend = gpu.platform.backend_type_get()
+    return {"frames": FRAMES, "edits": min(EDITS, FRAMES), "series": series, "backend": backend}
 
 
 splat_addon.register()
-play(steps(), and_quit=True)
+play(steps())

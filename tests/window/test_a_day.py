@@ -11,7 +11,6 @@ import pytest
 from PIL import Image
 
 ROOT = Path(__file__).resolve().parents[2]
-SECONDS = 300
 #: Rows and columns of the screen that show Suzanne through the camera, in a window of 1200 x 800 at its foot.
 VIEW = slice(475, 835), slice(250, 600)
 #: The share of pixels that may differ between two equal views because of ties at edges; none was observed.
@@ -24,14 +23,13 @@ def day(in_a_window, tmp_path_factory):
     folder = tmp_path_factory.mktemp("user")
     subprocess.run(["python3", "scripts/build.py"], cwd=ROOT, check=True)
     [package] = (ROOT / "build").glob("surfel_splatting-*.zip")
-    report, shot = in_a_window(
+    report, picture = in_a_window(
         "play_a_day.py",
-        SECONDS,
         *("--window-geometry", "0", "0", "1200", "800"),
         BLENDER_USER_RESOURCES=str(folder),
         SURFEL_PACKAGE=str(package),
     )
-    return report, lambda name, part=VIEW: _read(shot.with_name(f"{shot.stem}_{name}.png"), part)
+    return report, lambda name, part=VIEW: _read(picture(name), part)
 
 
 #: The guide's picture -> the moment of the day that it shows, and its rows and columns of the screen.

@@ -5,14 +5,13 @@ import numpy as np
 import pytest
 from PIL import Image
 
-SECONDS = 240
 #: The share of the sidebar's width for names at the left of values; "Pixels per Surfel" just fits.
 ROOM = 0.31
 
 
 @pytest.fixture(scope="module")
 def first(in_a_window):
-    return in_a_window("first_picture.py", SECONDS)[0]
+    return in_a_window("first_picture.py")[0]
 
 
 def test_five_clicks_make_a_lit_picture_of_surfels(first):

@@ -3,13 +3,11 @@
 
 import pytest
 
-SECONDS = 50
-
 
 @pytest.fixture(scope="module")
 def session(in_a_window):
     """The report of one run of refine_view.py."""
-    return in_a_window("refine_view.py", SECONDS, "--window-geometry", "0", "0", "1000", "700")[0]
+    return in_a_window("refine_view.py", "--window-geometry", "0", "0", "1000", "700")[0]
 
 
 def test_a_view_at_rest_refines_and_then_idles(session):

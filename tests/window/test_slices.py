@@ -6,7 +6,7 @@ from splat_addon.rendering.upload import loading
 
 
 def test_blender_survives_whatever_happens_while_surfels_are_loaded(in_a_window):
-    report, _ = in_a_window("load_in_slices.py", 240, "--window-geometry", "0", "0", "640", "480")
+    report, _ = in_a_window("load_in_slices.py", "--window-geometry", "0", "0", "640", "480")
     written = [count for _, _, count in report["draws"] if count]
     assert len(written) > 1 and max(written) <= loading.MOST_BYTES
     texts = [text for _, text, _ in report["draws"] if text]
@@ -16,7 +16,7 @@ def test_blender_survives_whatever_happens_while_surfels_are_loaded(in_a_window)
 
 
 def test_pictures_are_drawn_in_slices_and_shown_when_they_are_whole(in_a_window):
-    report, _ = in_a_window("draw_in_slices.py", 240, "--window-geometry", "0", "0", "640", "480")
+    report, _ = in_a_window("draw_in_slices.py", "--window-geometry", "0", "0", "640", "480")
     for name, calls in report.items():
         if name != "apart":
             shown = [call for call in calls if call["covered"] < 0.5]  # before, there was nothing to show

@@ -5,14 +5,12 @@ import numpy as np
 import pytest
 from PIL import Image
 
-SECONDS = 40
-
 
 @pytest.fixture(scope="module")
 def session(in_a_window):
     """(report, screenshot as (h, w, 3) array) of one run of convert_and_view.py."""
-    report, shot = in_a_window("convert_and_view.py", SECONDS)
-    return report, np.asarray(Image.open(shot).convert("RGB"), np.float32) / 255
+    report, picture = in_a_window("convert_and_view.py")
+    return report, np.asarray(Image.open(picture("view")).convert("RGB"), np.float32) / 255
 
 
 def test_the_operator_runs_from_the_interface(session):
