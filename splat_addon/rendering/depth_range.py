@@ -14,6 +14,7 @@ import numpy as np
 
 from ..surfels import Surfels
 from .scene.camera import Camera
+from .scene.far_reaching import box_corners, seen_places
 from .scene.table import FromEye, InstanceTable
 
 #: The clip range extends beyond the bounds by this fraction of its ends (for a parallel camera, of its length or
@@ -109,10 +110,19 @@ def depth_extent(table: InstanceTable, camera: Camera, epsilon: float) -> DepthE
 
 
 def seen_by(table: InstanceTable, camera: Camera) -> Seen:
-    """The instances that may be in the picture."""
+    """The instances that may be in the picture. Of far-reaching triangles, the boxes are those of what is in the view
+    volume."""
     firm, from_eye = table.firm, table.firm.from_eye(camera)
     are_beyond = beyond(from_eye.corners.reshape(-1, 3), camera).reshape(6, -1, 8)
     inside = ~are_beyond.all(axis=2).any(axis=0)
+    if len(firm.reaching):
+        corners = from_eye.corners.copy()
+        for row in firm.reaching.tolist():
+            places = seen_places(firm.placed[row], camera)
+            inside[row] = len(places) > 0
+            if len(places):
+                corners[row] = box_corners(places)
+        from_eye = from_eye._replace(corners=corners)
     outside, degenerate = len(firm) - int(inside.sum()), len(table) - len(firm)
     if not outside:
         return Seen(firm, from_eye, 0, degenerate)

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .assembly.accumulation import around_samples, mean_frame, sample_blocks, sample_camera
+from .assembly.near_and_far import NearAndFar
 from .assembly.panorama_faces import panorama_frame
 from .depth_range import clip_range
 from .detail.levels import forget_before, was_drawn
@@ -66,6 +67,7 @@ class Renderer:
         self.device = device
         self.resources = Resources(device)
         self.streamed = Streamed()
+        self.near_and_far = NearAndFar()
         self._refining: tuple[Scene, tuple, Shared] | None = None
 
     def render(
@@ -159,6 +161,7 @@ class Renderer:
 
     def _planned(self, scene: Scene, camera: Camera, settings: Settings, **options) -> Shared:
         """The plan of a picture and all that its samples share. options: of `plan`."""
+        scene = self.near_and_far.resolved(scene, camera)
         frame_plan = plan(scene, camera, settings, **options)
         check_samplers(frame_plan, self.device.max_samplers)
         return Shared(scene, frame_plan, settings)

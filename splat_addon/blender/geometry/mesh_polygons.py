@@ -10,6 +10,7 @@ import numpy as np
 
 from ...rendering import Polygons
 from ...rendering.scene.polygons import MAX_TRIANGLES
+from ...rendering.scene.strays import middle_of
 from ...sampling import Surface, Texture, TriangleMesh, corner_values, normal_map_texture
 from ...surfels import OPAQUE
 from ..materials.material_surfaces import CHANNEL_NAMES
@@ -29,8 +30,7 @@ def mesh_polygons(mesh: TriangleMesh) -> tuple[Polygons, ...]:
 
 def _part(mesh: TriangleMesh) -> Polygons:
     corners = mesh.triangles.ravel()
-    low, high = (end(mesh.positions[corners], axis=0) for end in (np.min, np.max))
-    origin = (low + high) / 2
+    origin = middle_of(mesh.positions[corners])
     normals = np.zeros((len(corners), 3), np.float32)
     if mesh.corner_normals is not None:
         normals = np.nan_to_num(mesh.corner_normals.reshape(-1, 3), nan=0.0, posinf=0.0, neginf=0.0)

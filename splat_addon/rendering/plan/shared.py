@@ -14,7 +14,7 @@ from ..identity import Identities
 from ..scene import Instance, Scene
 from ..scene.camera import Camera
 from ..settings import Settings
-from ..shadows.maps import ShadowMap
+from ..shadows.maps import ShadowMap, brought_down
 from ..view import View, build_view
 from .frame_plan import FramePlan
 from .graph import Pass
@@ -66,8 +66,9 @@ class Shared:
     def _seen_by_light(self, made: ShadowMap) -> View:
         """What is drawn into a shadow map. The range of a sun's depths is that of all casters around, because its
         lookups depend on it."""
-        casters, epsilon = self.scene.table.casting, self.settings.epsilon
-        whole = clip_range(casters, made.camera, epsilon) if made.camera.is_orthographic else None
+        epsilon, whole = self.settings.epsilon, None
+        if made.camera.is_orthographic:
+            whole = clip_range(brought_down(self.scene.table.casting, made.camera), made.camera, epsilon)
         return build_view(made.casters, made.drawn, epsilon, whole, are_split=False)
 
     @cached_property

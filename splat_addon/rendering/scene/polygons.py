@@ -13,6 +13,7 @@ import numpy as np
 
 from ...surfels import Shape
 from ..device.interface import MAX_TEXTURE_EDGE
+from .strays import middle_of
 
 #: Corners in a row of a texture.
 CORNERS_PER_ROW = 512
@@ -104,6 +105,17 @@ class Polygons(Shape):
         return tuple(np.array([end(column) for column in columns], np.float64) for end in (np.min, np.max))
 
     @cached_property
+    def longest_edges(self) -> np.ndarray:
+        """(T,) float64, no less than the longest edge of each triangle, object units."""
+        corners = self.positions.reshape(-1, 3, 3)
+        return np.linalg.norm(corners.max(axis=1).astype(np.float64) - corners.min(axis=1), axis=1)
+
+    @cached_property
+    def longest_edge(self) -> float:
+        """The greatest of them (0 if empty)."""
+        return float(self.longest_edges.max(initial=0.0))
+
+    @cached_property
     def block_bounds(self) -> tuple[np.ndarray, np.ndarray]:
         """Two (3, n) float64 corners, relative to `origin`, of a box around each block of triangles."""
         starts = np.arange(0, len(self), 3 * BLOCK)
@@ -115,8 +127,7 @@ def make_polygons(
 ) -> Polygons:
     """`Polygons` of one colour from (V, 3) vertices and (T, 3) indices. corner_normals: (T, 3, 3), None: flat."""
     vertices, count = np.asarray(vertices, np.float64), 3 * len(triangles)
-    low, high = (vertices.min(axis=0), vertices.max(axis=0)) if count else (np.zeros(3),) * 2
-    origin = fields.pop("origin", (low + high) / 2)
+    origin = fields.pop("origin", middle_of(vertices) if count else np.zeros(3))
     positions = (vertices - origin)[np.asarray(triangles).ravel()]
     normals = np.zeros((count, 3)) if corner_normals is None else np.asarray(corner_normals).reshape(-1, 3)
     given = {"colors": np.tile(np.float32(color), (count, 1)), "materials": np.zeros(count, np.int32)} | fields

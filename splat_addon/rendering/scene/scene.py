@@ -61,6 +61,8 @@ class Placed:
     may_change: bool = False
     #: polygons never are
     is_merged: ClassVar[bool] = False
+    #: surfels never do
+    reaches: ClassVar[bool] = False
 
     def __post_init__(self):
         if self.light_set not in range(MAX_LIGHT_SETS):
@@ -188,9 +190,12 @@ class PolygonInstance(Placed):
     """Polygons placed in the world.
 
     normal_maps: one for each of `textures`, or None, or nothing at all.
+    reaches: whether it consists of pieces of far-reaching triangles (`far_reaching`), which extend far beyond what is
+        seen of them.
     """
 
     normal_maps: tuple[NormalTexture | None, ...] = ()
+    reaches: bool = False
 
     def __post_init__(self):
         super().__post_init__()

@@ -166,6 +166,11 @@ class InstanceTable:
         return self.firm.taken(self.firm.of_kinds(lambda placed: placed.casts_shadow))
 
     @cached_property
+    def reaching(self) -> np.ndarray:
+        """(k,) rows of pieces of far-reaching triangles."""
+        return np.flatnonzero(self.of_kinds(lambda placed: placed.reaches))
+
+    @cached_property
     def local_corners(self) -> np.ndarray:
         """(n, 8, 3) corners of boxes around them, in the space of each, relative to its origin."""
         return np.where(CORNERS, self.high[:, None], self.low[:, None])[self.shape_of]
@@ -273,6 +278,28 @@ def make_table(placed: Iterable[Placed]) -> InstanceTable:
         high=np.array([high for _, high in bounds]).reshape(-1, 3),
         sizes=np.array([_sizes(shape) for shape in every_shape], np.float64).reshape(-1, 3),
     )
+
+
+def with_others(table: InstanceTable, rows: np.ndarray, made: list[Placed], is_kept: np.ndarray) -> InstanceTable:
+    """A table with more instances, each with the number of one that is there already, and without some of those. rows:
+    (m,) of these. is_kept: (n,) bool."""
+    if not made:
+        return table.taken(is_kept)
+    more, kept = make_table(made), table.taken(is_kept)
+    numbers = np.concatenate([kept.numbers, table.numbers[rows]])
+    order = np.argsort(numbers, kind="stable")
+    own = {
+        "placed": [*kept.placed, *more.placed],
+        "numbers": numbers,
+        "kind_of": np.concatenate([kept.kind_of, more.kind_of + len(table.every_kind)]),
+        "shape_of": np.concatenate([kept.shape_of, more.shape_of + len(table.shapes)]),
+        "slots": np.concatenate([kept.slots, table.slots[rows]]),
+        **{n: np.concatenate([getattr(kept, n), getattr(more, n)]) for n in ("matrices", "light_sets", "splits")},
+    }
+    own = {n: [v[k] for k in order.tolist()] if n == "placed" else v[order] for n, v in own.items()}
+    shared = {n: np.concatenate([getattr(table, n), getattr(more, n)]) for n in ("origins", "low", "high", "sizes")}
+    every = {"every_kind": table.every_kind + more.every_kind, "shapes": table.shapes + more.shapes}
+    return InstanceTable(**own, **shared, **every)
 
 
 def _sizes(shape) -> tuple[float, float, float]:

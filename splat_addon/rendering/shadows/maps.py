@@ -13,14 +13,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..depth_range import beyond
-from ..scene import Scene
+from ..scene import Placed, PolygonInstance, Scene
 from ..scene.camera import Camera, look_at
+from ..scene.far_reaching import highest_over, pressed_above
 from ..scene.light import MAX_SUN_HALF_ANGLE, Light
-from ..scene.table import InstanceTable
+from ..scene.table import InstanceTable, with_others
 from ..view import View
 from .casters import in_the_way
 from .receivers import (
     FILTER_REACH,
+    QUICK,
     Receivers,
     Viewers,
     are_larger_than_pixels,
@@ -43,8 +45,15 @@ LEAST_SIDE = 32
 #: The map of a sun covers all that is visible, so where its texels would be larger than pixels, it has up to this many
 #: times as many along its side; of several suns, fewer. No map grows beyond the larger of this side and the settings'.
 FINER_SUN, LARGEST_SIDE = 4, 4096
-#: The nearest distance of a caster, as a fraction of the farthest one's; closer casters cast no shadow.
+#: How far a sun's map reaches, in halves of its side: its depths are then exact to a quarter of a texel. Polygons above
+#: are brought down, and fewer surfels than this.
+DEEPEST, _FEW_SURFELS = 4096, 1024
+#: How much of those depths what is brought down gets; casters below begin at 0.005.
+_PRESSED = 0.002
+#: The nearest distance of a caster, as a share of the farthest one's; closer casters cast no shadow.
 NEAREST = 1e-4
+#: Where something so far away would leave out whole casters, the nearest distance as a share of the nearest one's.
+_JUST_BEFORE = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,8 +109,8 @@ def shadow_maps(
     made, without, count = [], 0, 0
     for number, light in enumerate(scene.lights):
         if light.casts_shadow:
-            whole = _CAMERAS[light.kind](light, corners.reshape(-1, 3), for_sun, resolution)
-            own = [c for c in whole if sees(c, corners).any()]
+            whole = _CAMERAS[light.kind](light, casters, for_sun, resolution)
+            own = [c for c in whole if c.is_orthographic or sees(c, corners).any()]
             if count + len(own) > MAX_MAPS:
                 without += 1
                 continue
@@ -126,6 +135,8 @@ def _needed(
     while 2 * side <= most and are_larger_than_pixels(side, needed):
         side *= 2
     found = []
+    if light.kind == "sun":
+        casters = brought_down(casters, cameras[0])
     for camera in (resized(c, side) for c in cameras):
         spread = spread_of(light, camera)
         if one := together([looked_up(camera, one, spread) for one in seen]):
@@ -239,10 +250,10 @@ def map_ranges(maps: tuple[ShadowMap, ...], lights: int) -> np.ndarray:
     return np.stack([np.concatenate([[0], np.cumsum(counts)[:-1]]), counts], axis=1)
 
 
-# Each gives the cameras of a light. corners: (8 n, 3) world, of n boxes of casters. seen: by the camera, if anything.
+# Each gives the cameras of a light. seen: by the camera, if anything.
 
 
-def _sun(light: Light, corners: np.ndarray, seen: Receivers | None, resolution: int) -> list[Camera]:
+def _sun(light: Light, casters: InstanceTable, seen: Receivers | None, resolution: int) -> list[Camera]:
     """One parallel camera for a sun. It covers what is both in the picture and in the scene, plus casters beside it
     that soften its shadows, up to as much again. It extends back to the farthest caster above that and no farther,
     because depths are stored as 24-bit fractions of its length."""
@@ -250,66 +261,123 @@ def _sun(light: Light, corners: np.ndarray, seen: Receivers | None, resolution: 
     to_light = frame[:3, :3].T
     if seen is None:
         return []
-    lit, visible, casters = (places @ to_light.T for places in (seen.corners.reshape(-1, 3), seen.space, corners))
+    lit, visible = (places @ to_light.T for places in (seen.corners.reshape(-1, 3), seen.space))
     lowest = np.maximum(lit.min(axis=0), visible.min(axis=0))
     low, high = lowest[:2], np.minimum(lit.max(axis=0), visible.max(axis=0))[:2]
     if not (low < high).all():
         return []
     margin = 0.02 * (high - low).max()
     middle, half = (low + high) / 2, max((high - low).max() / 2 + margin, 1e-30)
-    boxes = casters.reshape(-1, 8, 3)
-    nearest = _nearest_over(boxes, middle, half)
+    nearest = _nearest_over(casters, to_light, middle, half)
     if light.is_sized and nearest is not None:
         softens = math.tan(min(light.size / 2, MAX_SUN_HALF_ANGLE)) * max(nearest - lowest[2], 0.0)
         half += min(softens, half)
-        nearest = _nearest_over(boxes, middle, half)
+        nearest = _nearest_over(casters, to_light, middle, half)
     if nearest is None:
         return []
+    if nearest - lowest[2] > DEEPEST * half:
+        top = _nearest_over(casters.taken(~casters.of_kinds(_comes_down)), to_light, middle, half)
+        nearest = max(lowest[2] + DEEPEST * half, lowest[2] if top is None else top)
     reach = max(nearest - lowest[2], half) * 1.01
     frame[:3, 3] = frame[:3, :3] @ (*middle, nearest + 0.005 * reach)
     return [Camera(frame, (-half, half, -half, half), (resolution, resolution), 0.0, reach, is_orthographic=True)]
 
 
-def _nearest_over(boxes: np.ndarray, middle: np.ndarray, half: float) -> float | None:
-    """The highest point of the boxes (n, 8, 3) that overlap a square; None if none does."""
+def brought_down(casters: InstanceTable, camera: Camera) -> InstanceTable:
+    """The casters of a sun: those that are above its map are moved along the light, and pressed flat, into the first
+    part of its depths. Their shadows stay the same. Of those that reach into it, too, the upper part is there a second
+    time."""
+    depths = (camera.matrix_world[:3, 3] - casters.world_corners) @ camera.matrix_world[:3, 2]
+    is_above, begins_above = depths.max(axis=1) < camera.near, depths.min(axis=1) < camera.near
+    if not begins_above.any():
+        return casters
+    is_moved = is_above & casters.of_kinds(_comes_down)
+    made = [_pressed(casters.placed[k], camera, depths[k]) for k in np.flatnonzero(is_moved).tolist()]
+    rows = [*np.flatnonzero(is_moved).tolist()]
+    for k in np.flatnonzero(begins_above & ~is_above & casters.of_kinds(_can_be_pressed)).tolist():
+        if upper := pressed_above(casters.placed[k], camera, _PRESSED * camera.far):
+            made.append(PolygonInstance(upper, camera.matrix_world))
+            rows.append(k)
+    return with_others(casters, np.array(rows, int), made, ~is_moved)
+
+
+def _pressed(caster: Placed, camera: Camera, depths: np.ndarray) -> Placed:
+    """A caster whose box has these depths, moved to those that a map has for it."""
+    low, high = depths.min(), depths.max()
+    share = min(1.0, _PRESSED * camera.far / max(high - low, 1e-300))
+    along, press = camera.matrix_world[:3, 2], np.eye(4)
+    press[:3, :3] += (share - 1) * np.outer(along, along)
+    # a depth d becomes share (_PRESSED far + d - low)
+    eye = along @ camera.matrix_world[:3, 3]
+    press[:3, 3] = along * (eye * (1 - share) - share * (_PRESSED * camera.far - low))
+    return replace(caster, matrix_world=press @ caster.matrix_world)
+
+
+def _can_be_pressed(caster: Placed) -> bool:
+    """Whether what is above a map may be cut off, because it has few triangles, and no holes."""
+    return isinstance(caster, PolygonInstance) and not caster.is_cut_out and caster.polygons.triangles <= QUICK
+
+
+def _comes_down(caster: Placed) -> bool:
+    """Whether a map may have another instance in its place: of many surfels, the device has levels of detail."""
+    return isinstance(caster, PolygonInstance) or len(caster.shape) < _FEW_SURFELS
+
+
+def _nearest_over(casters: InstanceTable, frame: np.ndarray, middle: np.ndarray, half: float) -> float | None:
+    """The highest place of casters over a square, in a frame of the light, whose axes are the rows; None if there is
+    none."""
+    boxes = (casters.world_corners.reshape(-1, 3) @ frame.T).reshape(-1, 8, 3)
     least, most = boxes.min(axis=1)[:, :2], boxes.max(axis=1)[:, :2]
     is_over = ((least <= middle + half) & (most >= middle - half)).all(axis=1)
-    return boxes[is_over, :, 2].max() if is_over.any() else None
+    reaching = casters.reaching[is_over[casters.reaching]]
+    is_over[reaching] = False
+    tops = [boxes[is_over, :, 2].max(initial=-np.inf)]
+    tops += [highest_over(casters.placed[k], frame, middle, half) for k in reaching.tolist()]
+    return max(tops) if max(tops) > -np.inf else None
 
 
-def _spot(light: Light, corners: np.ndarray, seen, resolution: int) -> list[Camera]:
+def _spot(light: Light, casters: InstanceTable, seen, resolution: int) -> list[Camera]:
     half = math.tan(min(light.spot_angle / 2, 1.5)) * FACE_WINDOW
     if half > MAX_SPOT_WINDOW:
-        return _faces(light, corners, resolution, np.eye(3))
-    return _perspectives(light, corners, resolution, [look_at((0, 0, 0), light.direction)], half)
+        return _faces(light, casters, resolution, np.eye(3))
+    return _perspectives(light, casters, resolution, [look_at((0, 0, 0), light.direction)], half)
 
 
-def _point(light: Light, corners: np.ndarray, seen, resolution: int) -> list[Camera]:
-    return _faces(light, corners, resolution, np.eye(3))
+def _point(light: Light, casters: InstanceTable, seen, resolution: int) -> list[Camera]:
+    return _faces(light, casters, resolution, np.eye(3))
 
 
-def _area(light: Light, corners: np.ndarray, seen, resolution: int) -> list[Camera]:
+def _area(light: Light, casters: InstanceTable, seen, resolution: int) -> list[Camera]:
     """The front of an area light, and the halves of the sides that it illuminates."""
     axes = look_at((0, 0, 0), light.direction)[:3, :3].T
-    return _faces(light, corners, resolution, axes)[:-1]
+    return _faces(light, casters, resolution, axes)[:-1]
 
 
 _CAMERAS = {"sun": _sun, "point": _point, "spot": _spot, "area": _area}
 
 
-def _faces(light: Light, corners: np.ndarray, resolution: int, axes: np.ndarray) -> list[Camera]:
+def _faces(light: Light, casters: InstanceTable, resolution: int, axes: np.ndarray) -> list[Camera]:
     """Six square cameras; axes: (3, 3), of which the last's back comes first and its front last. The sides of their
     pictures lie along the axes too, or there would be gaps between them."""
     x, y, z = axes
     looks = (-z, y), (x, z), (-x, z), (y, z), (-y, z), (z, y)
     frames = [look_at((0, 0, 0), direction, up) for direction, up in looks]
-    return _perspectives(light, corners, resolution, frames, FACE_WINDOW)
+    return _perspectives(light, casters, resolution, frames, FACE_WINDOW)
 
 
-def _perspectives(light: Light, corners: np.ndarray, resolution: int, frames, half: float) -> list[Camera]:
-    position = np.asarray(light.position, np.float64)
-    far = float(np.linalg.norm(corners - position, axis=1).max()) * 1.01
-    near = max(NEAREST * far, min(light.size / math.sqrt(3), 0.5 * far))
+def _nearest_beside(position: np.ndarray, corners: np.ndarray) -> float:
+    """The distance from a lamp to the nearest of the boxes (n, 8, 3) that it is not in; infinite if it is in all."""
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    distances = np.linalg.norm(np.maximum(np.maximum(low - position, position - high), 0), axis=1)
+    return float(distances[distances > 0].min(initial=np.inf))
+
+
+def _perspectives(light: Light, casters: InstanceTable, resolution: int, frames, half: float) -> list[Camera]:
+    position, corners = np.asarray(light.position, np.float64), casters.world_corners
+    far = float(np.linalg.norm(corners - position, axis=2).max()) * 1.01
+    nearest = _nearest_beside(position, corners)
+    near = NEAREST * far if nearest > NEAREST * far else _JUST_BEFORE * nearest
+    near = max(near, min(light.size / math.sqrt(3), 0.5 * far))
     window, size = (-half, half, -half, half), (resolution, resolution)
     for frame in frames:
         frame[:3, 3] = position

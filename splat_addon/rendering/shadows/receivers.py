@@ -13,11 +13,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..depth_range import seen_by, visible_space
+from ..depth_range import Seen, seen_by, visible_space
+from ..scene import PolygonInstance
 from ..scene.camera import Camera
+from ..scene.far_reaching import box_corners, seen_places, seen_places_in
 from ..scene.light import MAX_SUN_HALF_ANGLE, Light
 from ..scene.table import InstanceTable
 from .hexahedra import places_in_pyramid
+from .strays import among_others, near_things
 
 #: A map has at least this many texels along the smallest pixel that looks it up, or as many as the settings allow.
 #: Where its size changes, shadows move by parts of a texel, an eighth of a pixel, which cannot be seen.
@@ -38,6 +41,10 @@ _ROUND = 1.13
 
 #: A position may be this many pixels beside the box of its object, because filters widen splats.
 _BESIDE = 3
+
+
+#: So many triangles are cut at the view volume in a millisecond.
+QUICK = 4096
 
 
 class Viewers(NamedTuple):
@@ -100,7 +107,7 @@ def receivers(table: InstanceTable, camera: Camera, lights_splats: bool) -> Rece
     lights_splats: whether splats are lit at their centres, which may lie outside the picture.
     """
     pixel, camera = 1.0 / camera.pixels_per_unit(), _through_lens(camera)
-    seen = seen_by(table, camera)
+    seen, corners = _seen_near(table, camera)
     if not len(seen.table):
         return None
     near, far, space = visible_space(camera, seen)
@@ -109,13 +116,50 @@ def receivers(table: InstanceTable, camera: Camera, lights_splats: bool) -> Rece
         nearest = farthest = np.ones(len(seen.table))
     beside = _BESIDE * pixel * farthest
     return Receivers(
-        corners=seen.table.world_corners,
+        corners=corners,
         space=space,
         light_sets=seen.table.light_sets,
         pixels=pixel * nearest,
         beside=beside,
         outside=float(beside.max()) + float(seen.table.radii.max()) * lights_splats,
     )
+
+
+def _seen_near(table: InstanceTable, camera: Camera) -> tuple[Seen, np.ndarray]:
+    """What `seen_by` finds, without strays, and (n, 8, 3) world corners of boxes around it; of far-reaching triangles
+    only what is near the other things, on which their shadows may fall."""
+    seen = seen_by(table, camera)
+    is_other = np.ones(len(seen.table), bool)
+    is_other[seen.table.reaching] = False
+    others = np.flatnonzero(is_other)
+    depths = _least_and_greatest(seen, others, camera)
+    is_kept = is_other.copy()
+    is_kept[others] = among_others(seen.table.triangles[others], *depths)
+    if is_kept.all():
+        return seen, seen.table.world_corners
+    boxes, in_world = seen.from_eye.corners.copy(), seen.table.world_corners.copy()
+    around = near_things(table, camera) if len(seen.table.reaching) else None
+    for row in seen.table.reaching.tolist():
+        places, world = seen_places_in(seen.table.placed[row], camera, around)
+        is_kept[row] = len(places) > 0
+        if len(places):
+            boxes[row], in_world[row] = box_corners(places), box_corners(world)
+    rows = np.flatnonzero(is_kept)
+    from_eye = seen.from_eye._replace(corners=boxes)
+    return seen._replace(table=seen.table.taken(rows), from_eye=from_eye.taken(rows)), in_world[rows]
+
+
+def _least_and_greatest(seen: Seen, rows: np.ndarray, camera: Camera) -> tuple[np.ndarray, np.ndarray]:
+    """(k,) least and (k,) greatest depths of what is seen of some instances: of their boxes, or if the camera may be in
+    one, and looking closer is quick, of its triangles in the view volume. Of what is not seen at all, both are the
+    greatest."""
+    least, greatest = seen.depths[rows].min(axis=1), seen.depths[rows].max(axis=1)
+    table = seen.table
+    are_polygons = table.of_kinds(lambda placed: isinstance(placed, PolygonInstance))[rows]
+    for k in np.flatnonzero(are_polygons & (least < camera.near) & (table.triangles[rows] <= QUICK)).tolist():
+        places = seen_places(table.placed[rows[k]], camera)
+        least[k], greatest[k] = (-places[:, 2].max(), -places[:, 2].min()) if len(places) else (greatest[k],) * 2
+    return least, greatest
 
 
 def looked_up(light_camera: Camera, seen: Receivers, spread: float) -> LookedUp | None:
