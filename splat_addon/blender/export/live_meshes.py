@@ -74,10 +74,6 @@ class Place(NamedTuple):
     matrix: np.ndarray
     manner: Manner
 
-    @property
-    def form(self) -> Form:
-        return self.manner.form
-
 
 @dataclass(eq=False)
 class LiveMesh:
@@ -110,11 +106,17 @@ class LiveMesh:
 
     @property
     def sampled_at(self) -> list[Place]:
-        return [place for place in self.places if place.form.has_surfels]
+        return self._places_of(lambda form: form.has_surfels)
 
     @property
     def drawn_at(self) -> list[Place]:
-        return [place for place in self.places if place.form.has_polygons]
+        return self._places_of(lambda form: form.has_polygons)
+
+    def _places_of(self, which: Callable[[Form], bool]) -> list[Place]:
+        # thousands of places are in one manner
+        forms = {id(manner): manner.form for _, manner in self.places}
+        chosen = {key for key, form in forms.items() if which(form)}
+        return self.places if len(chosen) == len(forms) else [place for place in self.places if id(place[1]) in chosen]
 
     @property
     def sampled_part(self) -> TriangleMesh:
@@ -136,13 +138,12 @@ class LiveMesh:
 
     def be_transparent(self) -> None:
         """Let places of a transparent mesh be in the form that it needs."""
-        forms = {id(place.manner): place.manner for place in self.places}
-        forms = {key: manner._replace(form=manner.form.of_transparent) for key, manner in forms.items()}
-        self.places = [place._replace(manner=forms[id(place.manner)]) for place in self.places]
+        manners = {id(manner): manner for _, manner in self.places}
+        manners = {key: each._replace(form=each.form.of_transparent) for key, each in manners.items()}
+        self.places = [Place(matrix, manners[id(manner)]) for matrix, manner in self.places]
 
     def placed(self, made: Callable[..., Placed], places: list[Place]) -> list[Placed]:
-        """Instances at places, of which some of the materials may be holdouts. made: makes one of
-        them from its fields, once for each manner."""
+        """Instances at places. made: makes one of them from its fields, once for each manner."""
         parts, which, matrices = {}, [], []
         for matrix, manner in places:
             if id(manner) not in parts:
@@ -152,6 +153,8 @@ class LiveMesh:
                 which.append(part)
                 matrices.append(matrix)
         instances = placed_at([part for part, _ in which], np.array(matrices))
+        if not any(manner.form.split_pixels for each in parts.values() for _, manner in each):
+            return instances
         return [self._split(one, manner.form.split_pixels) for one, (_, manner) in zip(instances, which, strict=True)]
 
     def _split(self, placed: Placed, pixels: float | None) -> Placed:
