@@ -20,6 +20,7 @@ from .mesh.cleaning import drop_unusable
 from .mesh.corners import corner_values, normal_map_texture
 from .mesh.joining import have_same_values, joined, transformed
 from .mesh.solid import is_solid
+from .mesh.strays import drop_strays
 from .mesh.triangle_mesh import TriangleMesh
 from .options import DEFAULT_SPLAT_SIZE, FLAT, PLAIN, SamplingOptions
 from .points import PointsReport, surfels_from_points
@@ -59,6 +60,7 @@ __all__ = [
     "VertexColors",
     "camera_spacing",
     "corner_values",
+    "drop_strays",
     "drop_unusable",
     "edge_samples",
     "flat_extents",

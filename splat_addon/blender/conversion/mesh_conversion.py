@@ -22,6 +22,7 @@ from ...sampling import (
     SamplingOptions,
     Tolerance,
     TriangleMesh,
+    drop_strays,
     drop_unusable,
     flat_extents,
     grid_spacing,
@@ -168,11 +169,11 @@ def prepare(
     Raises ValueError with a sentence: no faces, nothing usable, an impossible density or transform.
     """
     start = time.perf_counter()
-    images = {} if images is None else images
-    read = partial(read_mesh, images=images)
+    read = partial(read_mesh, images={} if images is None else images)
     gathered = gather(sources, depsgraph, choices.in_world_units, read)
     whole, matrix_world = gathered.mesh, gathered.matrix_world
     mesh, dropped = drop_unusable(whole)
+    mesh, strays = drop_strays(mesh)
     skipped = [f"{count:,} triangle{'s' * (count > 1)} {reason}" for reason, count in dropped.items()]
     if not len(mesh):
         raise ValueError(f"The mesh has no usable faces, only {', '.join(skipped)}; repair it first.")
@@ -194,6 +195,7 @@ def prepare(
     if predicted > MAX_SURFELS:
         raise ValueError(f"It would become {predicted:,} surfels and the limit is {MAX_SURFELS:,}; sample it coarser.")
     notes = [f"Skipped {', '.join(skipped)}"] if skipped else []
+    notes += [f"Skipped {stray_triangles(strays)}"] * bool(strays)
     unread = gathered.unread if choices.bake else ()
     if not choices.bake:
         notes += unread_sentences(gathered.unread)
@@ -216,6 +218,15 @@ def prepare(
         seconds,
         _deforms(sources),
         reason,
+    )
+
+
+def stray_triangles(count: int) -> str:
+    """The end of a sentence about triangles that `drop_strays` found."""
+    reach = "triangles that reach" if count > 1 else "triangle that reaches"
+    return (
+        f"{count:,} {reach} hundreds of times as far as the others; delete strays, and make a large surface an object "
+        "of its own"
     )
 
 

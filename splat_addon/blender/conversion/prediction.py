@@ -19,6 +19,7 @@ from ...sampling import (
     NO_FLAT_EXTENTS,
     FlatExtents,
     Outline,
+    drop_strays,
     drop_unusable,
     grid_spacing,
     outline,
@@ -74,7 +75,7 @@ def measure(sources: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph, cho
         gathered = gather(sources, depsgraph, choices.in_world_units, read_without_pixels)
     except ValueError:
         return NOTHING
-    mesh, _ = drop_unusable(gathered.mesh)
+    mesh, _ = drop_strays(drop_unusable(gathered.mesh)[0])
     if not len(mesh):
         return NOTHING
     surface = outline(mesh) if choices.asks_camera else None

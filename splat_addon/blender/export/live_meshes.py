@@ -29,6 +29,7 @@ from ...sampling import (
     NotSeenError,
     Outline,
     TriangleMesh,
+    drop_strays,
     grid_spacing,
     have_same_values,
     joined_at_edges,
@@ -39,7 +40,7 @@ from ...sampling import (
 from ...surfels import OPTIONAL_LAYOUT, Surfels
 from ..conversion.automatic_density import automatic_spacing
 from ..conversion.camera_density import most_demanding, without_camera
-from ..conversion.mesh_conversion import MAX_SURFELS
+from ..conversion.mesh_conversion import MAX_SURFELS, stray_triangles
 from ..geometry.mesh_extraction import ExtractedMesh, Topology, read_mesh, read_topology, slot_materials
 from ..geometry.mesh_polygons import is_transparent, left_out_of_polygons, mesh_polygons
 from ..geometry.reading import readable_mesh
@@ -103,6 +104,7 @@ class LiveMesh:
     drawn: tuple[TriangleMesh, tuple[Polygons, ...]] | None = None
     parts: MeshParts | None = None
     shown: tuple[Surfels, Surfels] | None = None
+    kept_strays: tuple[TriangleMesh, TriangleMesh, int] | None = None
 
     @property
     def sampled_at(self) -> list[Place]:
@@ -120,7 +122,24 @@ class LiveMesh:
 
     @property
     def sampled_part(self) -> TriangleMesh:
-        return self.parts.far if self.parts else self.content.triangles
+        return self.parts.far if self.parts else self.whole
+
+    @property
+    def whole(self) -> TriangleMesh:
+        """What may be sampled of the mesh: all of it but strays."""
+        return self._without_strays[1]
+
+    @property
+    def strays(self) -> int:
+        """The number of triangles that reach too far to be sampled."""
+        return self._without_strays[2]
+
+    @property
+    def _without_strays(self) -> tuple[TriangleMesh, TriangleMesh, int]:
+        mesh = self.content.triangles
+        if self.kept_strays is None or self.kept_strays[0] is not mesh:
+            self.kept_strays = mesh, *drop_strays(mesh)
+        return self.kept_strays
 
     @property
     def drawn_part(self) -> TriangleMesh:
@@ -245,6 +264,8 @@ class LiveMeshes:
                 live.be_transparent()
             try:
                 if live.sampled_at and len(live.sampled_part):
+                    if live.strays:
+                        notes.add(f"{live.owner}: left out of its surfels are {stray_triangles(live.strays)}")
                     sampled += self._sampled_instances(live, depsgraph, density, texture_mapped)
                 if live.drawn_at and len(live.drawn_part):
                     drawn += self._polygon_instances(live, notes)
@@ -302,6 +323,8 @@ class LiveMeshes:
                 slots = [override] * max(len(slots), 1)
             live.topology = read_topology(mesh, live.topology)
             live.content = read_mesh(evaluated, mesh, live.topology, self._images, slots)
+            if unusable := _not_finite(live.content.triangles):
+                live.said.append(f"{live.owner}: {unusable:,} triangles with a non-finite vertex are left out")
             live.parts = parts_by_group(evaluated, mesh, live.content.triangles, group) if group else None
             live.bends = evaluated.original.is_deform_modified(bpy.context.scene, "RENDER")
             live.materials = tuple(shading_material(material, notes, OPTIONAL_LAYOUT) for material in slots)
@@ -343,6 +366,12 @@ def _deforming(
     return DeformingSurfels(mesh, spacing=spacing, texture_mapped=texture_mapped, deforms=bends, **edges)
 
 
+def _not_finite(mesh: TriangleMesh) -> int:
+    """Number of triangles that have a vertex without a place."""
+    are_bad = ~np.isfinite(mesh.positions).all(axis=1)
+    return int(np.count_nonzero(are_bad[mesh.triangles].any(axis=1))) if are_bad.any() else 0
+
+
 def _stretch(matrix: np.ndarray) -> float:
     """The largest factor by which a matrix lengthens."""
     return float(np.linalg.norm(matrix[:3, :3], 2))
@@ -350,7 +379,7 @@ def _stretch(matrix: np.ndarray) -> float:
 
 def _by_resolution(live: LiveMesh, resolution: float, depsgraph) -> float:
     # deforming meshes keep their surfels, unless they are stretched too far
-    return live.spacing if live.deforming else grid_spacing(live.content.triangles, resolution=resolution)
+    return live.spacing if live.deforming else grid_spacing(live.whole, resolution=resolution)
 
 
 def _by_spacing(live: LiveMesh, spacing: float, depsgraph) -> float:
@@ -359,7 +388,7 @@ def _by_spacing(live: LiveMesh, spacing: float, depsgraph) -> float:
 
 
 def _by_camera(live: LiveMesh, pixels: float, depsgraph) -> float:
-    mesh, spacings = live.content.triangles, []
+    mesh, spacings = live.whole, []
     if live.surface is None or live.surface[0] is not mesh:
         live.surface = mesh, outline(mesh)
     for matrix in most_demanding(pixels, live.surface[1], live.matrices, depsgraph):
@@ -375,7 +404,7 @@ def _by_camera(live: LiveMesh, pixels: float, depsgraph) -> float:
 def _by_itself(live: LiveMesh, pixels: float, depsgraph) -> float:
     """The spacing that the most demanding place needs, within the limits of `automatic_density`; kept until it changes
     much."""
-    mesh = live.content.triangles
+    mesh = live.whole
     if live.surface is None or live.surface[0] is not mesh:
         live.surface = mesh, outline(mesh)
     shape = projected_area(mesh), grid_spacing(mesh, resolution=1)

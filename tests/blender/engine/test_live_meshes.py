@@ -9,6 +9,8 @@ import pytest
 
 from splat_addon.blender.conversion.automatic_density import LEAST_RESOLUTION
 from splat_addon.blender.engine import final_render
+from splat_addon.blender.export.live_meshes import LiveMeshes
+from splat_addon.blender.export.scene import SurfelStore, export_scene
 from splat_addon.rendering.upload import storages
 
 
@@ -372,3 +374,18 @@ def test_too_many_surfels_are_refused_with_a_sentence(live, picture, said):
     live.mesh_resolution = 20_000
     assert not picture().any()
     assert "Plane is left out: It would be 400,000,000 surfels and the limit is 100,000,000" in said()
+
+
+@pytest.mark.parametrize("form", ["POLYGONS", "SURFELS"])
+def test_faces_without_a_place_and_strays_among_surfels_are_counted_in_notes(form, add_mesh):
+    axis = np.linspace(0, 1, 9)
+    corners = [(x, y, 0) for y in axis for x in axis]
+    faces = [(k, k + 1, k + 10, k + 9) for row in range(8) for k in range(9 * row, 9 * row + 8)]
+    add_mesh("Sheet", [*corners, (np.nan, 0, 0), (1e7, 0, 0)], [*faces, (0, 1, 81), (1, 2, 82)])
+    bpy.context.scene.surfel_splatting.render_meshes = form
+    scene, notes = export_scene(bpy.context.evaluated_depsgraph_get(), SurfelStore(), LiveMeshes())
+    said = notes.sentences()
+    assert "Sheet: 1 triangles with a non-finite vertex are left out" in said
+    if form == "SURFELS":
+        assert any(note.startswith("Sheet: left out of its surfels are 1 triangle that reaches") for note in said)
+        assert len(scene.surfels[0].surfels) > 1000
