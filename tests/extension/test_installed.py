@@ -47,6 +47,6 @@ def test_nothing_is_left_when_it_is_disabled(installed):
 
 def test_reloading_scripts_and_enabling_again_leave_it_there_once(installed):
     facts, _ = installed
-    assert len(facts["once"]) == 9
+    assert len(facts["once"]) == 11
     assert facts["reloaded"] == facts["again"] == facts["once"]
     assert facts["pixels_again"] == facts["pixels"]

@@ -11,6 +11,7 @@ import bpy
 
 from ...whole_files import NotWholeError, unfinished
 from .exr_files import is_exr, size_of_exr
+from .stated_lengths import stated_length
 
 #: A .blend ends with a block of this name, which has 32 bytes, or 24 in files of Blender 4.5, or if it is compressed
 #: with a table of its parts (Zstandard's seekable format).
@@ -59,7 +60,7 @@ def check_picture(file: Path, size: tuple[int, int] | None = None) -> None:
     found = size_of_exr(file) if is_exr(head) else _opened_size(file)
     end = next((end for begin, end in _ENDS.items() if head.startswith(begin)), _ENDS_BY_NAME.get(file.suffix, b""))
     # other programs may add a few bytes
-    if end not in _bytes_of(file, -256):
+    if end not in _bytes_of(file, -256) or os.path.getsize(file) < stated_length(file):
         raise ValueError("The end of the picture is missing.")
     if size not in (None, found):
         raise ValueError("The picture has {} x {} pixels, not {} x {}.".format(*found, *size))

@@ -61,7 +61,7 @@ _LEAST_SAVED = 0.01
 
 @dataclass(frozen=True)
 class Choices:
-    """The user's settings for a conversion.
+    """The user's settings for a conversion. `mesh_settings.choices` fills all; those left out are of plain surfels.
 
     density: one keyword and value: "resolution", "spacing" or "count" as in sampling; "pixels" that a surfel may cover
         in the scene's camera; or "automatic", the same pixels within limits (`automatic_density`).
@@ -80,9 +80,9 @@ class Choices:
     splat_size: float = SamplingOptions.splat_size
     reduction: str = SamplingOptions.reduction
     grazing_angle: float = SamplingOptions.grazing_angle
-    tolerance: float | None = SamplingOptions.tolerance.distance
+    tolerance: float | None = None
     texture_mapped: bool = SamplingOptions.texture_mapped
-    crease_angle: float | None = SamplingOptions.crease_angle
+    crease_angle: float | None = None
     space: str = "object"
     join: bool = False
     bake: bool = False
