@@ -98,7 +98,8 @@ class Tile:
 
     def __init__(self, surfaces):
         self.surfaces, self.ran, self.swapped = surfaces, [], 0
-        self.resources = SimpleNamespace(made_from={})
+        self.resources = SimpleNamespace(made_from={}, arrivals=0)
+        self.shared = SimpleNamespace(kept=lambda key, make: make())
 
     def run(self, p):
         self.ran.append(p.name)

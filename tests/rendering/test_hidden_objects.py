@@ -63,12 +63,18 @@ def few_suffice(monkeypatch):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_no_method_draws_another_picture(method, render, monkeypatch):
-    settings = Settings(method=method, outputs=ALL)
+    settings = Settings(method=method, outputs=ALL, detail_tolerance=0.0)
     one, every = pictures(crowd(), perspective(), settings, render, monkeypatch)
     assert are_equal(one, every)
     is_looked_for = METHODS[method].rasterizer != "point_sprite" and not METHODS[method].sprites_hide
     assert (one.stats["instances_hidden"] > 10) == is_looked_for
     assert (one.stats["splats_drawn"] < 0.75 * every.stats["splats_drawn"]) == is_looked_for
+
+
+@pytest.mark.parametrize("method", ["mip", "ewa_object"])
+def test_merged_surfels_are_larger_and_nothing_of_them_is_missing(method, render, monkeypatch):
+    one, every = pictures(crowd(), perspective(), Settings(method=method, outputs=ALL), render, monkeypatch)
+    assert are_equal(one, every) and one.stats["instances_hidden"] > 10
 
 
 @pytest.mark.parametrize(
@@ -103,7 +109,8 @@ def test_what_is_seen_through_a_gap_is_drawn(gap, render, monkeypatch):
 @pytest.mark.parametrize("step", [0.15, 0.2, 0.3])
 def test_objects_that_touch_what_hides_them_are_drawn(step, render, monkeypatch):
     scene = crowd(rows=14, walls=(2 - 5 * step,), step=step)
-    one, every = pictures(scene, perspective(), Settings(outputs=ALL), render, monkeypatch)
+    settings = Settings(outputs=ALL, detail_tolerance=0.0)
+    one, every = pictures(scene, perspective(), settings, render, monkeypatch)
     assert are_equal(one, every) and one.stats["instances_hidden"]
 
 

@@ -64,7 +64,7 @@ def test_large_surfels_are_known_by_their_blend_depths():
         # they count as about the samples that they replace
         sizes = surfels.scales[:, 1] * grains(surfels.blend_depth)
         assert np.abs(sizes[is_large] / (1.25 * SPACING) - 1).max() < 0.25
-        assert instance.grain < 1.3 * other.radius < 0.5 * instance.radius
+        assert surfels.largest_grain < 1.3 * other.radius < 0.5 * instance.radius
     # so do the shares of their area in sums of weights
     assert LARGE_WEIGHT * LARGE_SIZE**2 == pytest.approx(1.25**2)
 

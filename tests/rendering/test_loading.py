@@ -16,7 +16,7 @@ from splat_addon.rendering import Arrival, Environment, Refinement, Renderer, Se
 from splat_addon.rendering.detail import levels
 from splat_addon.rendering.detail.levels import built_hierarchy
 from splat_addon.rendering.detail.stand_in import spread, stand_in
-from splat_addon.rendering.upload import loading
+from splat_addon.rendering.upload import loading, pools
 from splat_addon.rendering.upload.loading import Loading
 from splat_addon.rendering.viewport import arrival
 from splat_addon.surfels import Surfels
@@ -401,8 +401,10 @@ def test_small_sets_are_in_the_first_picture(on_device):
     np.testing.assert_array_equal(first, whole)
 
 
-def test_many_small_sets_are_a_large_one(small_steps, on_device):
-    """A first picture prepares no more than its share, however it is divided."""
+def test_many_small_sets_are_a_large_one(small_steps, on_device, monkeypatch):
+    """A first picture prepares no more than its share, however it is divided; sets that share textures are made at
+    once, up to `MOST_POOLED`."""
+    monkeypatch.setattr(pools, "MOST_SPLATS", 0)
     scene, camera = torus(2000)
     (instance,) = scene.surfels
     scene = replace(scene, surfels=tuple(replace(instance.surfels) for _ in range(9)))

@@ -11,6 +11,7 @@ from splat_addon.reference import scenes
 from splat_addon.rendering import Lens, Light, Renderer, Settings
 from splat_addon.rendering.features import shadows
 from splat_addon.rendering.plan import executor
+from splat_addon.rendering.plan.shared import Shared
 
 SETTINGS = Settings(method="quad", samples=4, shadow_resolution=128)
 SUN = Light("sun", energy=2.0, direction=(1, -0.5, -1), casts_shadow=True)
@@ -40,6 +41,7 @@ def test_maps_are_drawn_once_and_the_picture_is_as_with_each_its_own(drawn, rend
     shared = render(*under(SUN, LAMP), SETTINGS)
     assert len(drawn) == 1
     monkeypatch.setattr(shadows, "contents", lambda *_: object())
+    monkeypatch.setattr(Shared, "kept", lambda self, key, make: make())
     own = render(*under(SUN, LAMP), SETTINGS)
     assert len(drawn) == 5
     np.testing.assert_array_equal(shared.color, own.color)

@@ -127,20 +127,23 @@ def is_worth_preparing(instance: Instance) -> bool:
 
 
 def merging(
-    scene: Scene, camera: Camera, tolerance: float, samples: int, is_repeatable: bool = False
+    scene: Scene, camera: Camera, tolerance: float, samples: int, is_repeatable: bool = False, widens: bool = False
 ) -> frozenset[Surfels]:
     """The sets of which instances are drawn as merged surfels: those whose hierarchy is there, or spares so many
     surfels in the samples of this scene, which may be one moment of a frame, that making it pays.
 
     Making it also pays for sets that further pictures will show: those that were drawn before, or may be drawn again,
     unless an object's surfels are others in each frame. is_repeatable: what was drawn before does not count.
-    Shadow maps are not counted.
+    Shadow maps are not counted. widens: as of the method; its splats that are seen edge-on smear, and merged ones of
+    small sets much farther.
     """
     found = []
     if not tolerance:
         return frozenset()
     kinds = {
-        id(placed) for placed, count in scene.table.kinds if isinstance(placed, Instance) and may_merge(placed, count)
+        id(placed)
+        for placed, count in scene.table.kinds
+        if isinstance(placed, Instance) and (has_levels(placed) if widens else may_merge(placed, count))
     }
     table = scene.table.taken(scene.table.of_kinds(lambda placed: id(placed) in kinds))
     for shape in dict.fromkeys(table.shape_of.tolist()):

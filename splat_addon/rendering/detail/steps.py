@@ -28,7 +28,8 @@ class Steps(NamedTuple):
 
     numbers: storage indices of what they draw, one level after the other, in each of which clipped ones come first.
     first, clipped, last: (k,) of each level, where it begins, its clipped ones end, and it ends. errors: (k, 2) the
-    largest of each, object units, increasing; without those of what it shows in the second column.
+    largest of each, object units, increasing; without those of what it shows in the second column. radii: (k,) the
+    largest half-axis of what is merged in each, object units, increasing.
     """
 
     numbers: np.ndarray
@@ -36,6 +37,7 @@ class Steps(NamedTuple):
     clipped: np.ndarray
     last: np.ndarray
     errors: np.ndarray
+    radii: np.ndarray
 
     @property
     def counts(self) -> np.ndarray:
@@ -45,7 +47,7 @@ class Steps(NamedTuple):
 
 def make_steps(levels: Hierarchy, places: np.ndarray, clipped: tuple[slice, ...]) -> Steps:
     """places: storage index of each surfel and then each node. clipped: where clipped ones are in the storage."""
-    numbers, errors, clipped_counts = [], [], []
+    numbers, errors, radii, clipped_counts = [], [], [], []
     for entries in _levels(levels):
         if len(entries) > MOST_TRIANGLES:
             continue
@@ -53,13 +55,16 @@ def make_steps(levels: Hierarchy, places: np.ndarray, clipped: tuple[slice, ...]
         are_clipped = np.logical_or.reduce([(own >= part.start) & (own < part.stop) for part in clipped])
         numbers.append(np.concatenate([own[are_clipped], own[~are_clipped]]))
         clipped_counts.append(np.count_nonzero(are_clipped))
-        nodes = levels.errors[entries[entries >= levels.surfels] - levels.surfels]
+        merged = entries[entries >= levels.surfels] - levels.surfels
+        nodes = levels.errors[merged]
+        radii.append(levels.nodes.scales[merged].max(initial=0.0))
         errors.append((nodes.max(initial=0.0), nodes[:, :2].max(initial=0.0)))
     sizes = np.array([len(own) for own in numbers], int)
     first = np.cumsum(sizes) - sizes
     every = np.concatenate([np.zeros(0, np.int32), *numbers])
     rising = np.maximum.accumulate(np.reshape(errors, (-1, 2)), axis=0)
-    return Steps(every, first, first + np.array(clipped_counts, int), first + sizes, rising)
+    clipped_end = first + np.array(clipped_counts, int)
+    return Steps(every, first, clipped_end, first + sizes, rising, np.maximum.accumulate(np.array(radii)))
 
 
 def _levels(levels: Hierarchy):

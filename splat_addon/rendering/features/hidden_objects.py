@@ -169,7 +169,7 @@ def _are_hidden(waiting: Items, cover: Cover, tile) -> np.ndarray:
     off = tile.settings.detail_tolerance / tile.camera.pixels_per_unit()
     off = off * (1.0 if tile.camera.is_orthographic else np.maximum(-high[2], 0.0))
     are_merged = waiting.table.of_kinds(lambda placed: tile.levels(placed) is not None)
-    nearer = _NEARER * waiting.table.radii + off * are_merged
+    nearer = _NEARER * np.maximum(waiting.table.radii, tile.merged_radii(waiting)) + off * are_merged
     return cover.hides((low + high) / 2, (high - low) / 2, nearer, _BESIDE)
 
 

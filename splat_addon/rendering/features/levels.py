@@ -30,8 +30,9 @@ def merging(planning) -> frozenset:
     """The sets that may have merged surfels in the picture; only these may have them in shadow maps."""
     if planning.find(lit_splats.wanted):
         return frozenset()
-    tolerance = planning.settings.detail_tolerance
-    return levels.merging(planning.scene, planning.camera, tolerance, planning.samples, planning.is_repeatable)
+    tolerance, method = planning.settings.detail_tolerance, planning.method
+    seen = planning.scene, planning.camera, tolerance, planning.samples
+    return levels.merging(*seen, planning.is_repeatable, method.widens)
 
 
 def passes(planning):

@@ -311,6 +311,15 @@ class TileContext:
             counts[placed.row] = self.drawn_count(placed)
         return counts
 
+    def merged_radii(self, items: Items) -> np.ndarray:
+        """(n,) the largest half-axis of what is merged of each that is drawn whole, world units; 0 of others."""
+        radii, chosen = np.zeros(len(items)), self.steps_of(items)
+        for kind in items.table.kinds if (chosen >= 0).any() else ():
+            rows = items.table.of_kinds(lambda other, own=kind.placed: other is own) & (chosen >= 0)
+            if rows.any():
+                radii[rows] = self.steps(kind.placed).radii[chosen[rows]] * items.table.stretches[rows, 0]
+        return radii
+
     def in_parts(self, placed: DrawItem) -> Iterator[tuple[DrawItem, Cut]]:
         """An instance as it is drawn, for each part of its storage that has any of it."""
         for part, cut in enumerate(self.cuts(placed)):
