@@ -472,6 +472,7 @@ def spots(tied):
 
 def assert_few(tied, samples):
     """At most a counted handful of pixels are set; each has `samples` samples."""
-    allowed = max(TIES * samples * tied.size, 1)
+    # a tie at an edge that passes a corner of pixels is seen in two of them, however small the picture
+    allowed = max(TIES * samples * tied.size, 2)
     count = np.count_nonzero(tied)
     assert count <= allowed, f"{count} of {tied.size} pixels differ, not at most {allowed:.0f}"
