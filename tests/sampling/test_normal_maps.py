@@ -71,9 +71,8 @@ def test_a_map_in_object_space_is_the_normal_itself(square):
 
 
 @pytest.mark.filterwarnings("error")
-@pytest.mark.parametrize("image", [np.full((1, 1, 4), 0.5), np.full((1, 1, 4), np.nan)])
-def test_a_vector_without_a_direction_leaves_the_normal(square, image):
-    assert np.allclose(mapped(square, image).normals, (0, 0, 1), atol=1e-6)
+def test_a_vector_without_a_direction_leaves_the_normal(square):
+    assert np.allclose(mapped(square, np.full((1, 1, 4), 0.5)).normals, (0, 0, 1), atol=1e-6)
 
 
 @pytest.mark.filterwarnings("error")
