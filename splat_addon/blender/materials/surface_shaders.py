@@ -77,7 +77,8 @@ class Shader:
     def odd_numbers(self) -> Iterator[str]:
         """The inputs whose own values lie beyond what the shader takes, and what they count as."""
         for socket in self.node.inputs:
-            if has_range(self.node, socket.name):
+            # a node also has sockets of its other modes, which cannot be had by name
+            if has_range(self.node, socket.name) and socket.name in self.node.inputs:
                 given = self._own(socket.name).value
                 if (taken := in_range(socket.name, given)) != given:
                     yield f"{socket.name} {_numbers(given)} counts as {_numbers(taken)}"
