@@ -35,7 +35,7 @@ def from_rec709() -> np.ndarray:
 
 def is_rec709() -> bool:
     """Whether the working space is linear Rec. 709."""
-    return np.allclose(from_rec709(), np.eye(3), rtol=0, atol=1e-5)
+    return np.array_equal(from_rec709(), np.eye(3))
 
 
 def surfels_from_rec709(surfels: Surfels) -> Surfels:
@@ -49,5 +49,7 @@ def surfels_to_rec709(surfels: Surfels) -> Surfels:
 
 
 def _matrix(method: str) -> np.ndarray:
-    """A conversion of `Color` as a matrix, from what it makes of the unit colours."""
-    return np.array([getattr(Color(unit), method)()[:] for unit in np.eye(3).tolist()], np.float64).T
+    """A conversion of `Color` as a matrix, from what it makes of the unit colours. Blender 4.5 goes by way of XYZ; its
+    rounding must not change colours that stay as they are."""
+    made = np.array([getattr(Color(unit), method)()[:] for unit in np.eye(3).tolist()], np.float64).T
+    return np.eye(3) if np.allclose(made, np.eye(3), rtol=0, atol=1e-5) else made
