@@ -40,7 +40,12 @@ def test_a_picture(name, noise, tmp_path):
     scene = bpy.context.scene
     scene.render.image_settings.file_format = name
     file = tmp_path / f"whole{scene.render.file_extension}"
-    noise.save_render(str(file), scene=scene)
+    try:
+        noise.save_render(str(file), scene=scene)
+    except RuntimeError as error:
+        if name != "AVIF":
+            raise
+        pytest.skip(f"distributions build Blender without an encoder of AVIF: {error}")
     check_picture(file, SIZE)
     assert [length for length, part in parts(file) if is_whole_picture(part)] == []
     with pytest.raises(ValueError, match="The picture has 67 x 45 pixels, not 67 x 46"):

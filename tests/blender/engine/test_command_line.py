@@ -99,7 +99,8 @@ def test_a_camera_that_cannot_be_rendered_is_named_and_the_exit_code_is_1(render
     add_camera(type="PANO", panorama_type="MIRRORBALL")
     result = render_file("-f", "1")
     assert result.returncode == 1
-    assert "Surfel render failed: The panorama type of the camera 'camera' is Mirror Ball" in result.stdout
+    assert "Surfel render failed: The camera 'camera' cannot be used: The panorama type" in result.stdout
+    assert "is Mirror Ball; choose one of Equirectangular" in result.stdout
     assert not list(tmp_path.glob("frame_*"))
 
 
