@@ -50,7 +50,14 @@ LAYERS = [
     *settings_of(("mip",), layers=(2, 3, 6, 8)),
     *settings_of(("mip",), layers=(3, 6), blends_rest=(False,)),
 ]
-CHOICES = {"methods": METHODS_ALONE, "all": ALL, "layers": LAYERS}
+#: Hardware samples, shaded once and each, beside as many of the picture's own, and EWA, whose place they take.
+MULTISAMPLED = [
+    YARDSTICK,
+    *settings_of(("quad",), supersampling=(2,)),
+    *settings_of(("quad",), multisampling=(4,), sample_shading=(False, True)),
+    *settings_of(("ewa", "ewa_object")),
+]
+CHOICES = {"methods": METHODS_ALONE, "all": ALL, "layers": LAYERS, "multisampled": MULTISAMPLED}
 
 #: The choices shown beside the reference.
 PICTURED = frozenset([*settings_of(EVERY), replace(YARDSTICK, supersampling=2), *LAYERS[-2:]])
