@@ -11,6 +11,7 @@ void blend_depth_unpack(inout StoredSplat stored, int index) {
   blended = take_blend_depth(stored, index);
 }
 
+#part splat, limits
 // Backs with a blend depth do not occupy the place of fronts, so fronts need no precedence.
 void blend_depth_hide(inout Splat splat) {
   if (blended < 1.0) splat.side_weight = 1.0;

@@ -23,6 +23,7 @@ void main() {
   float radius = splat.grain * sqrt(max(dot(splat.axis_u, splat.axis_u), dot(splat.axis_v, splat.axis_v)));
   float offset = draw.epsilon * radius;
   if (splat.is_back) offset *= BACK_EPSILON;
+  offset += draw.epsilon_length;
   #hook blend(splat, eye, offset)
   #hook move(splat, radius, offset)
   vec4 moved = splat_corner(eye, offset);

@@ -3,8 +3,6 @@
 // Summary: maps points of the picture to positions in a splat's plane, for perspective and parallel cameras. The twin
 //          of reference/methods/plane.py.
 
-const float FILTER_SIGMA = 0.70710678;  // of the pixel's Gaussian, in pixels
-
 struct Plane {
   vec2 center;   // of the splat in the picture
   vec2 a;        // image of one half-axis u, v
@@ -47,7 +45,7 @@ Plane splat_plane(vec3 position, vec3 axis_u, vec3 axis_v, bool is_orthographic)
   plane.det = vec3(plane.gh.x * plane.b.y - plane.gh.y * plane.a.y, plane.gh.y * plane.a.x - plane.gh.x * plane.b.x,
                    plane.a.x * plane.b.y - plane.a.y * plane.b.x);
   plane.radius = sqrt(max(dot(axis_u, axis_u), dot(axis_v, axis_v)));
-  float over_rim = 2.0 * FILTER_SIGMA * length(depth_gradient(plane)), furthest = 16.0 * plane.radius;
+  float over_rim = 2.0 * sqrt(view.filter_variance) * length(depth_gradient(plane)), furthest = 16.0 * plane.radius;
   plane.reach = length(plane.slope) + (over_rim < furthest ? over_rim : furthest);
   return plane;
 }

@@ -4,6 +4,7 @@
 //          includer defines AS_PRINTED.
 
 const float FOOTPRINT_END = 1.0;
+const float LOW_PASS_RADIUS = 1.41421356;  // of the screen-space filter, in pixels
 
 // Half the side of the paper's square, in pixels: that of the bounding sphere if it were on the axis, at least 1.
 float half_square(Plane plane) {
@@ -20,7 +21,7 @@ vec2 footprint(Plane plane, vec2 size, inout vec2 middle) {
     middle = plane.center;
     return vec2(1.45 * half_square(plane));
   }
-  return 1.05 * max(size, vec2(2.0 * FILTER_SIGMA)) + length(plane.center - middle);
+  return 1.05 * max(size, vec2(LOW_PASS_RADIUS)) + length(plane.center - middle);
 }
 #part fragment
 // Weight and depth: that of the plane inside the ellipse, that of the centre where only the low-pass reaches.

@@ -15,9 +15,11 @@ const float FOOTPRINT_END = 1.5;
 #part vertex
 void adjust(inout Splat splat, inout Plane plane, bool is_orthographic) {}
 
-// Nothing counts beyond the triangle around 1.8 sigma of kernel and filter, and 0.75 pixel around the splat's rim.
+// Nothing counts beyond the triangle around 1.8 sigma of kernel and filter, and 0.75 pixel around the splat's rim, of
+// a filter of variance 0.5 or less.
 vec2 footprint(Plane plane, vec2 size, inout vec2 middle) {
-  return max(sqrt(size * size + 1.25 * 1.25), size + 0.75);
+  float wider = max(sqrt(2.0 * view.filter_variance), 1.0);
+  return max(sqrt(size * size + 1.25 * 1.25 * wider * wider), size + 0.75 * wider);
 }
 #part fragment
 #include "lib/normal_share.glsl"

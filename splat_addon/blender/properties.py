@@ -20,11 +20,13 @@ from ..rendering.methods import METHODS
 from ..rendering.scene.lines import MAX_WIDTH, Lines
 from ..rendering.scene.matcap import Matcap
 from ..rendering.settings import (
+    MAX_FILTER_VARIANCE,
     MAX_LAYERS,
     MAX_SAMPLES,
     MAX_SHADOW_RESOLUTION,
     MAX_SUPERSAMPLING,
     MAX_TOON_STEPS,
+    MIN_FILTER_VARIANCE,
     SUM_FORMATS,
     Settings,
 )
@@ -202,6 +204,27 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         soft_max=5.0,
         default=Settings.epsilon,
     )
+    epsilon_length: FloatProperty(
+        name="Additional Depth",
+        description=(
+            "How much farther behind the nearest splat others still blend with it, the same for all splats. The papers "
+            "have this alone: set Blend Depth to 0"
+        ),
+        subtype="DISTANCE",
+        min=0.0,
+        soft_max=1.0,
+        default=Settings.epsilon_length,
+    )
+    filter_variance: FloatProperty(
+        name="Filter Variance",
+        description=(
+            "Variance of the Gaussian that filters a pixel, in square pixels, for methods that have one. Higher values "
+            "are smoother. The papers have 1. Mip Filter takes at most 0.66"
+        ),
+        min=MIN_FILTER_VARIANCE,
+        max=MAX_FILTER_VARIANCE,
+        default=Settings.filter_variance,
+    )
     edge_threshold: FloatProperty(
         name="Edge Fade",
         description=(
@@ -293,8 +316,9 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     as_printed: BoolProperty(
         name="As Printed",
         description=(
-            "Follow the papers: back faces count as much as front faces, and all surfaces that are left for the last "
-            "transparent layer count as one. It takes no extra time, but far sides show at the rims of open surfaces"
+            "Follow the papers: back faces and large splats count as much as others, EWA has its printed filter, and "
+            "all surfaces that are left for the last transparent layer count as one. It takes no extra time, but far "
+            "sides show at the rims of open surfaces"
         ),
         default=Settings.as_printed,
     )
@@ -395,6 +419,8 @@ def _settings(scene, **choices) -> Settings:
         ramp=ramp_of(properties.ramp) if properties.shading == "ramp" else Settings.ramp,
         lines=_lines(properties) if properties.use_lines else None,
         epsilon=properties.epsilon,
+        epsilon_length=properties.epsilon_length,
+        filter_variance=properties.filter_variance,
         edge_threshold=properties.edge_threshold,
         detail_tolerance=properties.detail_tolerance,
         shadow_resolution=properties.shadow_resolution,

@@ -19,7 +19,6 @@ from ..rendering.scene.camera import Camera
 from ..rendering.settings import Settings
 from .clipped_kernels import TO_LINE, kernel_ends, seen_near_lines
 from .exact import DEFAULTS, shaded_rays
-from .filters import SIGMA
 from .rays import RayGrid, average, candidates, splats_in, visible_depth
 from .splats import Splats, eye_splats, projected_bounds
 
@@ -48,12 +47,12 @@ def render_ewa(
     camera: Camera,
     settings: Settings = DEFAULTS,
     *,
-    filter_sigma: float = SIGMA,
+    filter_sigma: float | None = None,
     cutoff: float = 2.0,
 ) -> Frame:
     """The picture of `scene` by screen-space EWA, in float64, at one sample a pixel.
 
-    filter_sigma: of the pixel's Gaussian, in pixels; 0 leaves the low-pass out.
+    filter_sigma: of the pixel's Gaussian, in pixels, if not the settings'; 0 leaves the low-pass out.
     cutoff: where a resampling kernel ends, in its standard deviations; 2 is where `render_exact`'s kernels end.
 
     A splat's projection is approximated as affine at its centre; splats with their centre in front of the near plane
@@ -61,6 +60,7 @@ def render_ewa(
     splats on rays through pixel centres, as in `render_exact`; the sums are normalised and shaded once per pixel. Clip
     lines cut what hides, and end kernels as the pixel's Gaussian blurs them (`clipped_kernels`).
     """
+    filter_sigma = settings.gaussian_variance**0.5 if filter_sigma is None else filter_sigma
     splats = eye_splats(scene, camera).as_asked(settings).as_opaque()
     before = -splats.center[:, 2] > (-np.inf if camera.is_orthographic else camera.near)
     grid = RayGrid.of_pixels(camera, 1, 0, 0, *camera.size)

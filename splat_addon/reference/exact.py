@@ -149,7 +149,7 @@ def _opaque_surface(splats: Splats, bounds, grid: RayGrid, scene: Scene, camera:
     epsilon = asked_for.epsilon
     if not scene.polygons:
         return visible_surface(splats, bounds, grid, epsilon), np.inf
-    hits = polygon_hits(scene, camera, grid, epsilon)
+    hits = polygon_hits(scene, camera, grid, epsilon, asked_for.epsilon_length)
     limit = hits.depth + hits.overlap / np.linalg.norm(grid.rays(np.arange(grid.count))[1], axis=1)
     surface = visible_surface(splats, bounds, grid, epsilon, limit)
     if asked_for.lights_splats:

@@ -35,7 +35,7 @@ class Hits:
     surface: np.ndarray
 
 
-def polygon_hits(scene: Scene, camera: Camera, grid: RayGrid, epsilon: float) -> Hits:
+def polygon_hits(scene: Scene, camera: Camera, grid: RayGrid, epsilon: float, epsilon_length: float = 0.0) -> Hits:
     """The nearest polygon of each of the grid's rays, ignoring splats."""
     origin, direction = grid.rays(np.arange(grid.count))
     n = grid.count
@@ -48,7 +48,8 @@ def polygon_hits(scene: Scene, camera: Camera, grid: RayGrid, epsilon: float) ->
         rays = np.flatnonzero(depth < found.depth)
         if len(rays):
             found.depth[rays] = depth[rays]
-            found.overlap[rays] = epsilon * radii.get(instance, 0.0)
+            grain = radii.get(instance, 0.0)
+            found.overlap[rays] = epsilon * grain + epsilon_length * (grain > 0)
             _take(instance, camera, corners, rays, triangle[rays], shares[rays], direction[rays], found)
     return found
 

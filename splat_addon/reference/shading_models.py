@@ -29,7 +29,7 @@ def _normals(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, sett
 
 
 def _depth(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, settings: Settings) -> np.ndarray:
-    extent = depth_extent(scene.table, camera, settings.epsilon)
+    extent = depth_extent(scene.table, camera, settings.epsilon, settings.epsilon_length)
     share = (surface.depth - extent.near) / (extent.far - extent.near)
     return np.repeat(np.clip(share, 0, 1)[:, None], 3, axis=1)
 

@@ -46,7 +46,8 @@ class Splats:
     clip: (N, 2, 3) lines in (a, b) at which each ends, and reflex: (N,) bool, as `Surfels.clip_lines` gives them.
     blend: (N,) how far off its plane it blends with others, in radii; infinite: not known.
     opacity: (N,), 1 where not is_transparent: (N,) bool, of instances that something shows through.
-    is_holdout: (N,) bool, of those that hide and show nothing.
+    is_holdout: (N,) bool, of those that hide and show nothing. offset: (N,) how much farther back than by its radius
+    each is moved to find what hides it, world units.
     """
 
     center: np.ndarray
@@ -67,6 +68,7 @@ class Splats:
     opacity: np.ndarray
     is_transparent: np.ndarray
     is_holdout: np.ndarray
+    offset: np.ndarray
 
     def __len__(self) -> int:
         return len(self.center)
@@ -92,7 +94,7 @@ class Splats:
 
     def push(self, epsilon: float) -> np.ndarray:
         """(N,) distance by which each splat is moved back to find what hides it, world units. epsilon: in radii."""
-        return epsilon * self.grain() * np.where(self.is_back, BACK_EPSILON, 1.0)
+        return epsilon * self.grain() * np.where(self.is_back, BACK_EPSILON, 1.0) + self.offset
 
     def blend_depth(self) -> np.ndarray:
         """(N,) distance from its plane up to which each splat blends with others, world units."""
@@ -103,9 +105,13 @@ class Splats:
         return Splats(*(getattr(self, f.name)[rows] for f in fields(self)))
 
     def as_asked(self, settings: Settings) -> Splats:
-        """The splats without backs, or with backs as fronts, if the settings say so."""
+        """The splats without backs, and moved back further, if the settings say so; as printed, with backs as fronts
+        and without blend depths."""
         splats = self.take(np.flatnonzero(~self.is_back)) if settings.culls_backs else self
-        return replace(splats, is_back=np.zeros(len(splats), bool)) if settings.as_printed else splats
+        splats = replace(splats, offset=np.full(len(splats), settings.epsilon_length))
+        if not settings.as_printed:
+            return splats
+        return replace(splats, is_back=np.zeros(len(splats), bool), blend=np.full(len(splats), np.inf))
 
     def as_opaque(self) -> Splats:
         """The same splats, made opaque."""
@@ -117,7 +123,8 @@ def eye_splats(scene: Scene, camera: Camera) -> Splats:
     parts = [_instance_splats(instance, camera, has_finish(scene)) for instance in scene.surfels]
     if not parts:
         vectors, flags = np.zeros((6, 0, 3)), np.zeros((4, 0), bool)
-        rest = flags[0], np.zeros(0, object), *_no_uvs(0), np.zeros((0, 2, 3)), flags[1], *np.zeros((2, 0)), *flags[2:]
+        own = flags[0], np.zeros(0, object), *_no_uvs(0), np.zeros((0, 2, 3)), flags[1]
+        rest = *own, *np.zeros((2, 0)), *flags[2:], np.zeros(0)
         return Splats(*vectors, np.zeros((0, 10 + len(PLAIN.numbers) * has_finish(scene))), *rest)
     return Splats(*(np.concatenate([getattr(part, f.name) for part in parts]) for f in fields(Splats)))
 
@@ -148,7 +155,7 @@ def _instance_splats(instance: Instance, camera: Camera, with_finish: bool) -> S
     if instance.is_transparent:
         opacity = np.clip(surfels.colors[:, 3].astype(np.float64), 0, 1)
     blend = np.full(count, np.inf) if surfels.blend_depth is None else surfels.blend_depth.astype(np.float64)
-    rest = *surfels.clip_lines(), blend, opacity, is_transparent, np.full(count, instance.is_holdout)
+    rest = *surfels.clip_lines(), blend, opacity, is_transparent, np.full(count, instance.is_holdout), np.zeros(count)
     splats = Splats(
         center, u, v, plane, normal, color, _surface(instance, with_finish), cosine < 0, textures, *uvs, *rest
     )

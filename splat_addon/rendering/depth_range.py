@@ -54,14 +54,14 @@ class Seen(NamedTuple):
         return -self.from_eye.corners[..., 2]
 
 
-def clip_range(table: InstanceTable, camera: Camera, epsilon: float) -> ClipRange:
+def clip_range(table: InstanceTable, camera: Camera, epsilon: float, epsilon_length: float = 0.0) -> ClipRange:
     """The clip range of everything that the camera sees."""
-    return clipped(camera, seen_by(table, camera), epsilon)
+    return clipped(camera, seen_by(table, camera), epsilon, epsilon_length)
 
 
-def clipped(camera: Camera, seen: Seen, epsilon: float) -> ClipRange:
+def clipped(camera: Camera, seen: Seen, epsilon: float, epsilon_length: float = 0.0) -> ClipRange:
     """The clip range of what `seen_by` found."""
-    near, far = _clip_range(camera, seen, epsilon)
+    near, far = _clip_range(camera, seen, epsilon, epsilon_length)
     return ClipRange(near, far, _power_of_two_scale(camera, seen, near))
 
 
@@ -95,10 +95,10 @@ class DepthExtent:
     is_ahead: bool
 
 
-def depth_extent(table: InstanceTable, camera: Camera, epsilon: float) -> DepthExtent:
+def depth_extent(table: InstanceTable, camera: Camera, epsilon: float, epsilon_length: float = 0.0) -> DepthExtent:
     """The depth extent of objects that may be in the picture."""
     seen = seen_by(table, camera)
-    near, far = _clip_range(camera, seen, epsilon)
+    near, far = _clip_range(camera, seen, epsilon, epsilon_length)
     radii, nearest = seen.table.radii, seen.depths.min(axis=1)
     # Add a radius, because a method may lengthen the shorter half-axis.
     reaches_near = bool((nearest - radii <= camera.near)[radii > 0].any())
@@ -170,11 +170,11 @@ def _hulls(seen: Seen) -> np.ndarray:
     return np.concatenate([np.delete(corners, rows, axis=0).reshape(-1, 3), *places])
 
 
-def _clip_range(camera: Camera, seen: Seen, epsilon: float) -> tuple[float, float]:
+def _clip_range(camera: Camera, seen: Seen, epsilon: float, epsilon_length: float = 0.0) -> tuple[float, float]:
     if not len(seen.table):
         return camera.near, camera.far
     nearest = float(seen.depths.min())
-    farthest = float((seen.depths.max(axis=1) + epsilon * seen.table.radii).max())
+    farthest = float((seen.depths.max(axis=1) + epsilon * seen.table.radii).max()) + epsilon_length
     before, behind = abs(nearest), abs(farthest)
     if camera.is_orthographic:
         left, right, bottom, top = camera.window

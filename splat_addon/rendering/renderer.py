@@ -323,12 +323,12 @@ class Renderer:
         whole = None
         if frame_plan.tiles != ((0, 0, *camera.size),):
             drawn = camera.cropped(*_drawn((0, 0, *camera.size), frame_plan))
-            whole = clip_range(scene.table, drawn, settings.epsilon)
+            whole = clip_range(scene.table, drawn, settings.epsilon, settings.epsilon_length)
         execution = Execution(*self._watching(settings, frame_plan, stats, progress))
         for number, tile in enumerate(frame_plan.tiles):
             stats["tile"] = number
             tile_camera = camera.cropped(*_drawn(tile, frame_plan))
-            view = build_view(scene.table, tile_camera, settings.epsilon, whole)
+            view = build_view(scene.table, tile_camera, settings.epsilon, whole, epsilon_length=settings.epsilon_length)
             context = TileContext(self.resources, frame_plan, scene, tile_camera, settings, view, shared, tile)
             stats["splats"] += int(view.placed.table.counts.sum())
             stats["polygons"] += int(view.polygons.table.triangles.sum())

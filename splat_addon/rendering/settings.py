@@ -6,6 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from .frame import OUTPUTS
+from .methods import get_method
 from .scene.lines import Lines
 from .scene.matcap import Matcap
 from .scene.numbers import MAX_FACTOR, MAX_LENGTH
@@ -35,6 +36,9 @@ MAX_SHADOW_RESOLUTION = 2048
 
 MAX_LAYERS = 64
 
+#: Of the Gaussian that filters a pixel, square pixels; and the most that three columns of a silhouette can have.
+MIN_FILTER_VARIANCE, MAX_FILTER_VARIANCE, MAX_SILHOUETTE_VARIANCE = 0.2, 4.0, 2 / 3
+
 EVEN_RAMP = Ramp.of_steps(3)
 
 #: Outputs that follow the nearest sample of a pixel.
@@ -61,10 +65,13 @@ class Settings:
     multisampling: samples that the hardware tests for depth in each of those, for methods that work in space; a device
         has what its `multisample_counts` name, and Blender's has none.
     sample_shading: of multisampling, evaluate splats and light at every sample, not once a pixel.
+    filter_variance: of the Gaussian that filters a pixel, in square pixels, for the methods that have one (Mip Filter,
+        EWA, EWA in Space); the pixels of `reference.filters` have the default, the papers 1.
     edge_threshold: where splats' weights sum to less, the pixel fades to the background (the view-independent paper's
         threshold, section 4.5); 1 is one splat's centre, 0 covers whatever a splat reaches.
     epsilon: how far, in radii of each splat, the visibility pass moves it back along the view ray;
         surfaces closer than that mix (facts: 0.5 to 5 is a plateau, 0 breaks the picture up).
+    epsilon_length: the same for all splats, in scene units, on top of that. The papers have this alone.
     detail_tolerance: of surfels that are too small to be seen one by one, merged ones are drawn that are off by
         at most this many pixels, in each view (the camera's, and each shadow map's in its texels); 0 draws all.
     shadow_resolution: texels along the side of a shadow map; 0 disables shadows.
@@ -79,8 +86,11 @@ class Settings:
     lights_splats: light each splat where it stands and blend their colours, as Botsch and Kobbelt 2003 do, instead of
         lighting the sample that they blend to.
     culls_backs: skip splats that face away, also for open surfaces (Botsch and Kobbelt 2003, section 4).
-    as_printed: follow the papers where this project has rules of its own: backs are drawn as fronts, where else they
-        weigh little beside one; and the last transparent layer hides as one surface does, not as all that it holds.
+    as_printed: follow the papers where this project has rules of its own. Backs are drawn as fronts, where else they
+        weigh little beside one; the last transparent layer hides as one surface does, not as all that it holds; EWA's
+        filter has variance 1; splats have neither blend depths nor smaller weights where they are large; below the edge
+        threshold a pixel is as opaque as its weights sum to; lit splats are blended with lit polygons whichever way
+        both face.
     storage: the format of surfels on the device, a name in `upload.storages`.
     sum_format: of the sums of colour and material, a name in `SUM_FORMATS`.
     profile: wait for the device after each pass, so that the frame's statistics contain the time of each.
@@ -97,8 +107,10 @@ class Settings:
     samples: int = 1
     multisampling: int = 0
     sample_shading: bool = False
+    filter_variance: float = 0.5
     edge_threshold: float = 0.0
     epsilon: float = 0.5
+    epsilon_length: float = 0.0
     detail_tolerance: float = 1.0
     shadow_resolution: int = 1024
     ambient_occlusion: float = 0.0
@@ -131,6 +143,12 @@ class Settings:
             raise ValueError(f"samples must be 1 to {MAX_SAMPLES}, not {self.samples}.")
         if self.multisampling not in MULTISAMPLING:
             raise ValueError(f"multisampling must be one of {MULTISAMPLING}, not {self.multisampling!r}.")
+        most = MAX_SILHOUETTE_VARIANCE if get_method(self.method).filters_silhouettes else MAX_FILTER_VARIANCE
+        if not MIN_FILTER_VARIANCE <= self.filter_variance <= most:
+            raise ValueError(
+                f"filter_variance must be {MIN_FILTER_VARIANCE:g} to {most:.3g} square pixels with method "
+                f"{self.method}, not {self.filter_variance}."
+            )
         if not 0 <= self.edge_threshold <= MAX_FACTOR:
             raise ValueError(f"edge_threshold must be 0 or more splat weights, not {self.edge_threshold}.")
         if not 0 <= self.detail_tolerance <= MAX_FACTOR:
@@ -156,3 +174,20 @@ class Settings:
             raise ValueError(f"outputs must be among {', '.join(OUTPUTS)}, not {self.outputs!r}.")
         if not 0 <= self.epsilon <= MAX_FACTOR:
             raise ValueError(f"epsilon must be 0 or more splat radii, not {self.epsilon}.")
+        if not 0 <= self.epsilon_length <= MAX_LENGTH:
+            raise ValueError(f"epsilon_length must be a length of 0 or more, not {self.epsilon_length}.")
+
+    @property
+    def gaussian_variance(self) -> float:
+        """Variance of the pixel's Gaussian, square pixels: the paper's if as printed, or the chosen one; of methods
+        that do not choose, the default."""
+        method = get_method(self.method)
+        if method.pixel_variance is not None:
+            return Settings.filter_variance
+        return method.printed_variance if self.as_printed and method.printed_variance else self.filter_variance
+
+    @property
+    def pixel_variance(self) -> float:
+        """Variance of the method's pixel filter, square pixels."""
+        own = get_method(self.method).pixel_variance
+        return self.gaussian_variance if own is None else own

@@ -140,20 +140,27 @@ class View:
 
 
 def build_view(
-    table: InstanceTable, camera: Camera, epsilon: float, whole: ClipRange | None = None, are_split: bool = True
+    table: InstanceTable,
+    camera: Camera,
+    epsilon: float,
+    whole: ClipRange | None = None,
+    are_split: bool = True,
+    epsilon_length: float = 0.0,
 ) -> View:
-    """Instances as seen by this camera. epsilon: how far visibility moves splats back, in radii.
+    """Instances as seen by this camera. epsilon: how far visibility moves splats back, in radii, and
+    epsilon_length on top of that, world units.
 
     whole: clip range of the camera that this one is cropped from, if any, so that depths are rounded alike in all parts
         of a picture.
     are_split: whether split objects are polygons near this camera and surfels beyond; they cast shadows as both.
     """
     seen = seen_by(table, camera)
-    near, far, scale = whole or clipped(camera, seen, epsilon)
+    near, far, scale = whole or clipped(camera, seen, epsilon, epsilon_length)
     own, from_eye = seen.table, seen.from_eye
     begin = _split_distances(own, from_eye, camera) if are_split else np.zeros(len(own))
     hides_backs = own.of_kinds(lambda placed: placed.is_closed) & (seen.depths >= camera.near).all(axis=1)
-    overlaps = epsilon * table.overlaps[np.searchsorted(table.numbers, own.numbers)] * scale
+    grains = table.overlaps[np.searchsorted(table.numbers, own.numbers)]
+    overlaps = (epsilon * grains + epsilon_length * (grains > 0)) * scale
     items = Items(own, from_eye, scale, hides_backs, overlaps, begin * scale)
     are_surfels = own.of_kinds(lambda placed: isinstance(placed.shape, Surfels))
     return View(

@@ -142,8 +142,8 @@ class ConversionProperties:
         max=math.pi,
     )
     splat_size: splat_size_property(
-        "Half-axis of a splat, in spacings. 1.25 covers every surface; smaller splats are sharper but leave dark"
-        " specks",
+        "Half-axis of a splat, in spacings. 1.25 covers every surface; smaller splats are sharper but leave dark "
+        "specks. The papers' surfel quads have 0.5",
         soft_max=2.0,
     )
     source: EnumProperty(

@@ -27,12 +27,13 @@ GERMAN = {
         "keine. Braucht keine zusätzliche Zeit"
     ),
     (
-        "Follow the papers: back faces count as much as front faces, and all surfaces that are left for the last "
-        "transparent layer count as one. It takes no extra time, but far sides show at the rims of open surfaces"
+        "Follow the papers: back faces and large splats count as much as others, EWA has its printed filter, and "
+        "all surfaces that are left for the last transparent layer count as one. It takes no extra time, but far "
+        "sides show at the rims of open surfaces"
     ): (
-        "Den Veröffentlichungen folgen: Rückseiten zählen so viel wie Vorderseiten, und alle Flächen, die für die "
-        "letzte durchsichtige Schicht übrig sind, zählen als eine. Braucht keine zusätzliche Zeit, aber an "
-        "den Rändern offener Flächen scheinen die fernen Seiten durch"
+        "Den Veröffentlichungen folgen: Rückseiten und große Splats zählen so viel wie andere, EWA hat den gedruckten "
+        "Filter, und alle Flächen, die für die letzte durchsichtige Schicht übrig sind, zählen als eine. Braucht keine "
+        "zusätzliche Zeit, aber an Rändern offener Flächen sind abgewandte Seiten zu sehen"
     ),
     (
         "Leave out splats that face away, even on open surfaces, which then have holes. It saves up to half of the time"
@@ -243,6 +244,22 @@ GERMAN = {
     ("Shows each light in a few even steps, with a sharp-edged highlight (Lake et al. 2000)"): (
         "Jede Lampe in wenigen gleichmäßigen Stufen, mit einem scharf begrenzten Glanzlicht (Lake et al. 2000)"
     ),
+    "Additional Depth": "Zusätzliche Tiefe",
+    (
+        "How much farther behind the nearest splat others still blend with it, the same for all splats. The papers "
+        "have this alone: set Blend Depth to 0"
+    ): (
+        "Wie viel weiter hinter dem nächsten Splat andere noch mit ihm mischen, für alle Splats gleich. Die "
+        "Veröffentlichungen haben nur das: Mischtiefe dazu auf 0 setzen"
+    ),
+    "Filter Variance": "Filtervarianz",
+    (
+        "Variance of the Gaussian that filters a pixel, in square pixels, for methods that have one. Higher values "
+        "are smoother. The papers have 1. Mip Filter takes at most 0.66"
+    ): (
+        "Varianz der Gaußkurve, die ein Pixel filtert, in Quadratpixeln, für Verfahren, die eine haben. Höhere Werte "
+        "sind weicher. Die Veröffentlichungen haben 1. Mip-Filter nimmt höchstens 0,66"
+    ),
     "Edge Fade": "Randverlauf",
     "End at Edges": "An Kanten enden",
     "Environment": "Umgebung",
@@ -304,10 +321,11 @@ GERMAN = {
         "werden vergrößert"
     ),
     (
-        "Half-axis of a splat, in spacings. 1.25 covers every surface; smaller splats are sharper but leave dark specks"
+        "Half-axis of a splat, in spacings. 1.25 covers every surface; smaller splats are sharper but leave dark "
+        "specks. The papers' surfel quads have 0.5"
     ): (
         "Halbachse eines Splats, in Abständen. 1,25 bedeckt jede Fläche; kleinere Splats sind schärfer, "
-        "lassen aber dunkle Punkte"
+        "lassen aber dunkle Punkte. Die gedruckten Quadrate haben 0,5"
     ),
     "Hidden for Surfels": "Für Surfels versteckt",
     "Hide": "Verstecken",

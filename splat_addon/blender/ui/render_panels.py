@@ -152,7 +152,14 @@ class RENDER_PT_surfel_motion_blur(_RenderPanel, bpy.types.Panel):
 class RENDER_PT_surfel_papers(_RenderPanel, bpy.types.Panel):
     bl_label = "As in the Papers"
     bl_options = frozenset({"DEFAULT_CLOSED"})
-    properties = ("lights_splats", "culls_backs", "as_printed")
+    properties = ("lights_splats", "culls_backs", "as_printed", "epsilon_length")
+
+    def draw(self, context):
+        super().draw(context)
+        properties = getattr(context.scene, RENDER_SETTINGS)
+        row = self.layout.row()
+        row.active = get_method(properties.method).pixel_variance is None
+        row.prop(properties, "filter_variance")
 
 
 class RENDER_PT_surfel_film(_RenderPanel, bpy.types.Panel):

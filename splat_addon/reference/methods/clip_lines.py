@@ -8,7 +8,7 @@ import numpy as np
 from ...large_surfels import SAMPLE_SIZE
 from ...rendering.methods import METHODS
 from . import TWINS
-from .mip import FILTER_SIGMA, KERNEL_VARIANCE, NORMAL, NORMAL_END
+from .mip import FILTER_VARIANCE, KERNEL_VARIANCE, NORMAL, NORMAL_END
 from .plane import Plane, gradients, places
 
 #: Smaller shares are 0: the approximation ends there.
@@ -124,7 +124,7 @@ def _both_keep(one: np.ndarray, other: np.ndarray, correlation: np.ndarray) -> n
 
 def _kernel_under_pixel(place: np.ndarray, change: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Middle (M, 2) and variance (M, 2, 2) of kernel times pixel; those of the kernel if the pixel is unbounded."""
-    pixel = FILTER_SIGMA**2 * change @ np.swapaxes(change, 1, 2)
+    pixel = FILTER_VARIANCE * change @ np.swapaxes(change, 1, 2)
     kernel = KERNEL_VARIANCE * np.eye(2)
     has_end = (np.trace(pixel, axis1=1, axis2=2) < LARGEST_PIXEL) & ((place**2).sum(axis=1) < LARGEST_PIXEL)
     pixel, place = np.where(has_end[:, None, None], pixel, np.eye(2)), np.where(has_end[:, None], place, 0.0)

@@ -3,12 +3,14 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from .plane import Plane, gradients, in_footprint, places, plane_depth
 
 KERNEL_VARIANCE = 0.25
-FILTER_SIGMA = 0.5**0.5
+FILTER_VARIANCE = 0.5
 #: 0.5 - x (a + b x^2 + ...) is within 7e-4 of a normal distribution's share beyond x, from -NORMAL_END on.
 NORMAL = 0.396668, -0.0613809, 0.00673240, -0.000320832
 NORMAL_END = 2.6
@@ -18,8 +20,11 @@ RIM_END = 1.4
 FOOTPRINT_END = 1.5
 
 
-def samples(plane: Plane, points: np.ndarray, pixel: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(M,) weights and (M,) depths at (M, 2) picture points; pixel: (2,) its size in the picture.
+def samples(
+    plane: Plane, points: np.ndarray, pixel: np.ndarray, variance: float = FILTER_VARIANCE
+) -> tuple[np.ndarray, np.ndarray]:
+    """(M,) weights and (M,) depths at (M, 2) picture points; pixel: (2,) its size in the picture. variance: of
+    its Gaussian, square pixels.
 
     Sigma = kernel + filter J J^T (Zwicker et al. 2001, in object space); the amplitude keeps the integral,
     and the rim is blurred as the filter blurs it.
@@ -29,17 +34,17 @@ def samples(plane: Plane, points: np.ndarray, pixel: np.ndarray) -> tuple[np.nda
         j = gradients(plane, at, pixel)
         # det J and q x J, multiplied out: edge-on, the differences that they stand for have no digits left.
         scale = at.k / at.det
-        spread = FILTER_SIGMA**2 * at.k * scale * pixel.prod()
+        spread = variance * at.k * scale * pixel.prod()
         across = scale[:, None] * pixel * at.d[:, ::-1]
-        det = spread**2 + KERNEL_VARIANCE * (FILTER_SIGMA**2 * (j * j).sum(axis=(1, 2)) + KERNEL_VARIANCE)
-        squares = KERNEL_VARIANCE * (at.uv**2).sum(axis=1) + FILTER_SIGMA**2 * (across**2).sum(axis=1)
+        det = spread**2 + KERNEL_VARIANCE * (variance * (j * j).sum(axis=(1, 2)) + KERNEL_VARIANCE)
+        squares = KERNEL_VARIANCE * (at.uv**2).sum(axis=1) + variance * (across**2).sum(axis=1)
         rho2 = KERNEL_VARIANCE / det * squares
         reach = np.maximum(np.linalg.norm(at.uv, axis=1), 1e-30)
-        along = np.linalg.norm(np.einsum("ni,nij->nj", at.uv, j), axis=1) / reach * FILTER_SIGMA
-        is_inside = (at.k > 0) & in_footprint(plane, points, pixel, _footprint, FOOTPRINT_END)
+        along = np.linalg.norm(np.einsum("ni,nij->nj", at.uv, j), axis=1) / reach * variance**0.5
+        is_inside = (at.k > 0) & in_footprint(plane, points, pixel, partial(_footprint, variance), FOOTPRINT_END)
         within = _within_rim(reach, along)
         weights = np.where(is_inside, within * KERNEL_VARIANCE / np.sqrt(det) * np.exp(-2 * rho2), 0.0)
-        return weights, plane_depth(plane, at, pixel, FILTER_SIGMA)
+        return weights, plane_depth(plane, at, pixel, variance**0.5)
 
 
 def _within_rim(reach: np.ndarray, along: np.ndarray) -> np.ndarray:
@@ -55,6 +60,8 @@ def _within_rim(reach: np.ndarray, along: np.ndarray) -> np.ndarray:
     return np.where(x < RIM_END, within, 0.0)
 
 
-def _footprint(size: np.ndarray) -> np.ndarray:
-    """Half-axes in pixels: joined with a filter of 1.25 pixels, and at least 0.75 of a pixel longer."""
-    return np.maximum(np.sqrt(size**2 + 1.25**2), size + 0.75)
+def _footprint(variance: float, size: np.ndarray) -> np.ndarray:
+    """Half-axes in pixels: joined with a filter of 1.25 pixels, and at least 0.75 of a pixel longer; of a filter wider
+    than the default more."""
+    wider = max(variance / FILTER_VARIANCE, 1) ** 0.5
+    return np.maximum(np.sqrt(size**2 + (1.25 * wider) ** 2), size + 0.75 * wider)

@@ -73,8 +73,8 @@ def sample_camera(camera: Camera, number: int, samples: int) -> Camera:
     narrower by that, so that a picture is as sharp whatever the number of its samples.
     """
     ((_, _, *on_lens),) = sample_points(1, number)
-    variance = camera.pixel_variance - (_BOX_VARIANCE if samples > 1 else 0.0)
-    moved = replace(_moved(camera, *pixel_offset(number, samples)), sample=number, pixel_variance=variance)
+    variance = _BOX_VARIANCE if samples > 1 else 0.0
+    moved = replace(_moved(camera, *pixel_offset(number, samples)), sample=number, sample_variance=variance)
     return _through(moved, camera.lens.points(np.array(on_lens))) if camera.lens else moved
 
 

@@ -193,7 +193,8 @@ def _declared(description: PipelineDescription, source: str, varying: str) -> st
     lines += [f"uniform {kinds.get(name, 'sampler2D')} {name};" for name in description.samplers]
     # What is evaluated once a pixel is evaluated where a sample is covered, not at a centre outside the triangle.
     smooth = "smooth" if description.sample_shading else "centroid"
-    lines += [f"{smooth if how == 'smooth' else how} {varying} {kind} {name};" for how, kind, name in description.varyings]
+    qualifiers = {"smooth": smooth, "flat": "flat"}
+    lines += [f"{qualifiers[how]} {varying} {kind} {name};" for how, kind, name in description.varyings]
     if varying == "in":
         lines += [f"layout(location = {n}) out {kind} {name};" for n, (kind, name) in enumerate(description.outputs)]
     return "\n".join(lines) + "\n#line 1\n" + source

@@ -32,5 +32,6 @@ def parts(planning, p):
     if p.host in _HOSTS and p.kind != "edge_ids":
         # A shadow map is compared with points that the camera sees; if casters moved by less, surfaces would shadow
         # themselves.
-        words = () if p.kind == "shadow" else ("moves_less",)
+        # As printed, all splats blend alike, and large ones weigh as much as others.
+        words = ("limits",) if p.kind == "shadow" else () if planning.settings.as_printed else ("limits", "moves_less")
         yield Part("blend_depth", words, only="splats" if p.host == "visibility.frag" else "")

@@ -18,7 +18,8 @@ VALUES = {"depth_range": ("vec2", lambda tile: [d * tile.view.scale for d in til
 
 def extent(planning) -> DepthExtent:
     """The depth extent of everything that may be in the picture."""
-    return depth_extent(planning.scene.table, planning.around, planning.settings.epsilon)
+    settings = planning.settings
+    return depth_extent(planning.scene.table, planning.around, settings.epsilon, settings.epsilon_length)
 
 
 def linear(planning) -> tuple[bool, str]:

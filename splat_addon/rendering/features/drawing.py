@@ -161,6 +161,7 @@ def draw_block(
     """The values of `uniforms.DRAW`."""
     values = (
         tile.settings.epsilon,
+        tile.settings.epsilon_length * tile.view.scale,
         max(tile.view.least_offset(tile.plan.linear_depth), placed.items.setback),
         tile.first_merged(placed),
         tile.rows_without_lines(placed),

@@ -46,7 +46,7 @@ def pixel_variance(planning) -> float:
     hardware samples, which are smaller parts of the pixel.
     """
     settings, each = planning.settings, planning.settings.multisampling and planning.settings.sample_shading
-    return planning.method.pixel_variance / (settings.multisampling if each else 1)
+    return settings.pixel_variance / (settings.multisampling if each else 1)
 
 
 def parts(planning, p):

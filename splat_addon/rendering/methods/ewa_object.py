@@ -11,4 +11,5 @@ METHOD = Method(
     rasterizer="object_space",
     writes_depth=True,
     widens=True,
+    printed_variance=1.0,  # "a typical choice for the variance matrix of the prefilter is the identity"
 )

@@ -8,4 +8,5 @@ METHOD = Method(
     label="Homogeneous",
     paper="Guennebaud et al. 2006, sections 3 and 4, repaired",
     summary=("Exact ellipses, no smaller than the pixel's filter, with correct depth; more accurate at grazing angles"),
+    pixel_variance=0.5,  # a disc of sqrt(2) pixels, where the Gaussian of that variance ends
 )

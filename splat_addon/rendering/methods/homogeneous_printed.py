@@ -8,4 +8,5 @@ METHOD = Method(
     label="Homogeneous, as Printed",
     paper="Guennebaud et al. 2006, sections 3 and 4, equations 8 to 10",
     summary="Uses the paper's own formulas: discs that face the ray vanish, and small ones lose their depth",
+    pixel_variance=0.5,  # a disc of sqrt(2) pixels, where the Gaussian of that variance ends
 )

@@ -28,7 +28,9 @@ class Method:
         method corrects or clamps.
     widens: quads extend in space past the exact ellipses that the visibility pass draws; for splats seen edge-on, by
         any number of pixels.
-    pixel_variance: variance of the pixel filter, samples squared; a box has 1/12. Textures are looked up under it.
+    pixel_variance: variance of the pixel filter, samples squared; a box has 1/12. None: the settings choose it.
+        Textures are looked up under it.
+    printed_variance: the paper's, where the settings choose it.
     """
 
     name: str
@@ -42,7 +44,8 @@ class Method:
     sprites_hide: bool = False
     writes_depth: bool = False
     widens: bool = False
-    pixel_variance: float = 0.5
+    pixel_variance: float | None = None
+    printed_variance: float | None = None
 
     @property
     def spreads(self) -> bool:

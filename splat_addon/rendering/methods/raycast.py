@@ -8,4 +8,5 @@ METHOD = Method(
     label="Ray Cast",
     paper="Botsch et al. 2005, sections 3 and 5",
     summary="Exact ellipses, no smaller than the pixel's disc",
+    pixel_variance=0.5,  # a disc of sqrt(2) pixels, where the Gaussian of that variance ends
 )

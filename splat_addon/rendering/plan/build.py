@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable
 
 from ..features import CHECKS, MARGINS, PARTS, PASSES, READ_BACK, depth_format, lit_splats
 from ..scene import Scene
-from ..scene.camera import PIXEL_VARIANCE, Camera
+from ..scene.camera import Camera
 from ..settings import Settings
 from ..shadows.receivers import Viewers
 from ..upload.storages import get_storage
@@ -59,7 +59,7 @@ def plan(
         multisamples=settings.multisampling,
         sample_shading=bool(settings.multisampling and settings.sample_shading),
         # the box that several samples add to a pixel is wider than the Gaussian of more than 2 x 2 of its own
-        filter_variance=camera.pixel_variance if settings.supersampling == 1 else PIXEL_VARIANCE,
+        filter_variance=settings.gaussian_variance - (camera.sample_variance if settings.supersampling == 1 else 0.0),
         method=settings.method,
         storage=get_storage(settings.storage).name,
         sum_format=settings.sum_format,

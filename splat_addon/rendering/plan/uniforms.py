@@ -34,7 +34,8 @@ VIEW: Block = (
     ),
 )
 
-#: Of one draw call. epsilon: how far visibility moves splats back, in radii. least_offset: the least by which it moves
+#: Of one draw call. epsilon: how far visibility moves splats back, in radii, and epsilon_length on top of that, in view
+#: units. least_offset: the least by which it moves
 #: anything, as a share of the distance; of an orthographic camera a length. first_merged: index of the first stored
 #: splat that is a merged one. rows_without_lines: of the storage before that, which the texture of clip lines lacks.
 #: Where many instances are drawn, first_instance: the first row of their table; first, stride: the triangles of each.
@@ -43,6 +44,7 @@ DRAW: Block = (
     "draw",
     (
         ("float", "epsilon"),
+        ("float", "epsilon_length"),
         ("float", "least_offset"),
         ("float", "first_merged"),
         ("float", "rows_without_lines"),

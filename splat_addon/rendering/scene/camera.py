@@ -15,9 +15,6 @@ from .lens import Lens
 from .numbers import MAX_FACTOR, MAX_INDEX, check_range
 from .window import Windowed
 
-#: Variance of the Gaussian that filters a pixel, in square pixels.
-PIXEL_VARIANCE = 0.5
-
 
 @dataclass(frozen=True, eq=False)
 class Camera(Windowed):
@@ -27,7 +24,7 @@ class Camera(Windowed):
     size: width, height in pixels. near, far: clip distances along -Z, world units.
     lens: used by renders with several samples, for perspective cameras; None is a pinhole.
     sample: the number of the picture's sample that this camera takes; noise differs from sample to sample.
-    pixel_variance: of the Gaussian that filters a pixel, in square pixels.
+    sample_variance: of the places of a picture's samples in the pixel, in square pixels; filters are narrower by it.
     """
 
     matrix_world: np.ndarray
@@ -38,11 +35,11 @@ class Camera(Windowed):
     is_orthographic: bool = False
     lens: Lens | None = None
     sample: int = 0
-    pixel_variance: float = PIXEL_VARIANCE
+    sample_variance: float = 0.0
 
     def __post_init__(self):
         self._check(may_begin_behind=self.is_orthographic)
-        check_range("A pixel's variance", self.pixel_variance, 0.0, MAX_FACTOR)
+        check_range("The variance of a camera's samples", self.sample_variance, 0.0, MAX_FACTOR)
         check_range("A camera's sample", self.sample, 0, MAX_INDEX, is_whole=True)
         if self.lens and self.is_orthographic:
             raise ValueError("A lens needs a perspective camera: through one, parallel views are no longer parallel.")

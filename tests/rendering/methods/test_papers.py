@@ -12,7 +12,7 @@ from splat_addon.reference.methods.homogeneous_printed import window_map
 from splat_addon.reference.methods.plane import splat_plane
 from splat_addon.reference.methods.sprites import window_depth
 from splat_addon.reference.metrics import psnr
-from splat_addon.rendering import Camera, Scene, Settings, plan
+from splat_addon.rendering import Camera, Renderer, Scene, Settings, plan
 
 SIZE = (128, 128)
 FLAT = Settings(shading="flat", supersampling=1)
@@ -158,3 +158,64 @@ def test_in_one_pass_every_pixel_is_a_splat_and_the_nearest_wins(render):
         assert seen == {(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)}
         np.testing.assert_array_equal(frame.color[64, 64, :3], colors["near"])
         assert frame.depth[64, 64] == pytest.approx(2.0, rel=1e-6)
+
+
+@pytest.mark.parametrize("method", ["ewa", "ewa_object"])
+def test_as_printed_ewas_prefilter_has_variance_1(method, on_device):
+    """Equation 10: a Gaussian of variance V + J^-1 J^-T in the plane, that is J V J^T + 1 in the picture. V is 1/4 in
+    half-axes. A parallel camera's map is affine. By default the prefilter's variance is 1/2."""
+    disc = discs((0.003, -0.001, -2), (0.031, 0.008, 0.011), (-0.006, 0.019, 0.0034))
+    scene, axes = Scene((disc,)), np.concatenate(disc.half_axes())
+    camera = Camera.orthographic(np.eye(4), 0.32, (32, 32), 0.1, 10)
+    pixel = 0.32 / 32
+    j = axes[:, :2].T / pixel
+    y, x = np.mgrid[:32, :32] + 0.5
+    e = np.stack([x - 16 - 0.003 / pixel, y - 16 + 0.001 / pixel], axis=-1)
+    for as_printed, variance in ((True, 1.0), (False, 0.5)):
+        settings = replace(FLAT, method=method, as_printed=as_printed)
+        sums = on_device(lambda device, settings=settings: sums_of(device, scene, camera, settings))
+        both = j @ j.T / 4 + variance * np.eye(2)
+        power = np.einsum("...i,ij,...j->...", e, np.linalg.inv(both), e)
+        share = np.sqrt(np.linalg.det(j @ j.T / 4) / np.linalg.det(both))  # so that the integral stays the kernel's
+        expected = np.where(power < 4, share * np.exp(-power / 2), 0)
+        inside = abs(power - 4) > 1e-3
+        assert np.count_nonzero(expected) > 20
+        np.testing.assert_allclose(sums[inside], expected[inside], atol=1e-5)
+
+
+def sums_of(device, scene, camera, settings):
+    """(h, w) sums of the weights of a picture's splats."""
+    renderer = Renderer(device)
+    renderer.render(scene, camera, settings)
+    texture = next(texture for key, texture in renderer.resources.textures.items() if key[0] == "gbuffer_color")
+    return device.target([texture]).read(0)[..., 3]
+
+
+@pytest.mark.parametrize("method", ["quad", "sprites", "raycast_printed"])
+def test_one_epsilon_for_all_splats_is_a_length(method, render):
+    """Overlapping splats blend if and only if their distance is small (2003, section 3.3): of a small and of a large
+    splat alike, those less than epsilon behind blend with it, and no others."""
+    settings = replace(FLAT, method=method, epsilon=0.0, epsilon_length=0.1)
+    for radius in (0.02, 0.3):
+        for apart, is_blended in ((0.09, True), (0.11, False)):
+            near, far = (tinted((0, 0, z), radius, color) for z, color in ((-2.0, (1, 0, 0)), (-2 - apart, (0, 1, 0))))
+            frame = render(Scene((near, far)), AHEAD, settings)
+            assert (frame.color[64, 64, 1] > 0.1) == is_blended, (radius, apart)
+
+
+def tinted(position, radius, color, **fields):
+    surfels = discs(position, (radius, 0, 0), (0, radius, 0))
+    return replace(surfels, colors=np.array([[*color, 1]], np.float32), **fields)
+
+
+def test_as_printed_a_stored_blend_depth_limits_nothing(render):
+    """All splats within epsilon of the nearest blend, whatever their surface needs."""
+    blend_depth = np.array([0.05], np.float32)
+    near = tinted((0, 0, -2), 0.3, (1, 0, 0), blend_depth=blend_depth)
+    far = tinted((0, 0, -2.1), 0.3, (0, 1, 0), blend_depth=blend_depth)
+    scene = Scene((near, far))
+    for as_printed in (False, True):
+        settings = replace(FLAT, method="quad", as_printed=as_printed)
+        frame, exact = render(scene, AHEAD, settings), render_exact(scene, AHEAD, settings, samples=1)
+        assert (frame.color[64, 64, 1] > 0.1) == as_printed
+        np.testing.assert_allclose(frame.color[64, 64], exact.color[64, 64], atol=1e-5)
