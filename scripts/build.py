@@ -4,10 +4,12 @@
     python3 scripts/build.py [--out DIR] [--index]
 
 The same checkout gives the same bytes everywhere. The builder is plain Python that comes with every Blender; this
-script uses the one in the demo's environment.
+script uses the one in the demo's environment. The wheels that the manifest names are downloaded once, to `wheels/`.
 """
 
 import argparse
+import hashlib
+import re
 import shutil
 import subprocess
 import sys
@@ -17,6 +19,7 @@ from pathlib import Path
 
 import environment
 from environment import ROOT, Problem
+from environment.lock import alone
 
 # the extension's own way to write files, which needs no packages
 sys.path.append(str(ROOT))
@@ -27,6 +30,9 @@ from splat_addon.whole_files import write_whole
 BUILDER = Path("addons_core/bl_pkg/cli/blender_ext.py")
 TAGS = Path("modules/_bpy_internal/extensions/tags.py")
 
+
+#: Pins each wheel by its hash; the manifest names their files.
+PINS, MANIFEST = ROOT / "requirements" / "wheels.txt", ROOT / "blender_manifest.toml"
 
 #: File name that the builder gives a package.
 ZIPS = "surfel_splatting-*.zip"
@@ -39,6 +45,7 @@ def build(python: Path, blender_scripts: Path, out: Path) -> Path:
     Raises Problem with the tool's own message if the extension is rejected.
     """
     out.mkdir(parents=True, exist_ok=True)
+    fetch_wheels(python)
     tags = f"--valid-tags={blender_scripts / TAGS}"
     tool = [str(python), str(blender_scripts / BUILDER)]
     with tempfile.TemporaryDirectory() as scratch:
@@ -52,6 +59,33 @@ def build(python: Path, blender_scripts: Path, out: Path) -> Path:
         if old.name != made.name:
             old.unlink()
     return out / made.name
+
+
+def fetch_wheels(python: Path) -> None:
+    """Download the wheels that the manifest names and that are not in their place yet. Raises Problem if one cannot be
+    had, or is another than the pinned one."""
+    pinned = set(re.findall(r"sha256:([0-9a-f]{64})", PINS.read_text(encoding="utf-8")))
+    (ROOT / "wheels").mkdir(exist_ok=True)
+    with alone(ROOT / "wheels" / ".lock", "Another run downloads the wheels; waiting."):
+        for name in re.findall(r'"\./(wheels/[^"]+)"', MANIFEST.read_text(encoding="utf-8")):
+            wheel = ROOT / name
+            if not (wheel.is_file() and hashlib.sha256(wheel.read_bytes()).hexdigest() in pinned):
+                print(f"Downloading {wheel.name}; this is done once.", flush=True)
+                write_whole(wheel, _downloaded(python, wheel.name))
+
+
+def _downloaded(python: Path, name: str) -> bytes:
+    """The bytes of a wheel, which pip checks against the pinned hashes."""
+    interpreter, abi, platforms = name[: -len(".whl")].split("-")[-3:]
+    wanted = ["--python-version", interpreter[len("cp") :], "--abi", abi, "--implementation", "cp"]
+    wanted += [word for platform in platforms.split(".") for word in ("--platform", platform)]
+    pip = [str(python), "-m", "pip", "download", "--quiet", "--disable-pip-version-check", "--no-deps"]
+    with tempfile.TemporaryDirectory() as scratch:
+        command = [*pip, "--only-binary=:all:", "--require-hashes", "-r", str(PINS), "-d", scratch, *wanted]
+        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        if done.returncode or not (Path(scratch) / name).is_file():
+            raise Problem(f"The wheel {name} could not be had: {done.stdout.decode(errors='replace').strip()}")
+        return (Path(scratch) / name).read_bytes()
 
 
 def write_reproducibly(package: Path) -> None:

@@ -89,6 +89,7 @@ HOMES = {
     "gpu": ("rendering/device/blender_gpu.py", "blender/engine/viewport.py"),
     "gpu_extras": ("blender/engine/viewport.py",),
     "moderngl": ("rendering/device/standalone.py",),
+    "lazrs": ("interchange/laz.py",),
 }
 
 

@@ -38,6 +38,12 @@ SOLID = "surfels_solid"
 #: which is float32, cannot hold the whole origin of the surfels. Without it, they are 0.
 OFFSET = "surfels_offset"
 
+#: Custom property of a scene: the three float64 that were taken from the coordinates of its files.
+SCENE_OFFSET = "surfels_scene_offset"
+
+#: Custom property of a surfel mesh: the time from which its attribute `gps_time` counts.
+TIME_START = "gps_time_start"
+
 #: Custom property of a surfel mesh: the 9 numbers of `working_space.to_xyz` when its colours were written. When the
 #: working space changes, Blender converts no colour attributes of floats.
 PRIMARIES = "surfels_primaries"

@@ -1,29 +1,41 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfels and the files of other programs: PLY in three layouts. Needs only numpy and `surfels`.
+"""Surfels and the files of other programs: PLY in three layouts, and scans. Needs only numpy and `surfels`, and lazrs
+for compressed LAS.
 
-Reading: `ply_header`, then `ply_file` (vertices as named columns), then `contents` picks the layout: `surfel_ply`
-(every field of surfels), `gaussian_ply` (3D and 2D Gaussian splatting) or `point_ply` (bare points, which
-`sampling.surfels_from_points` completes). Before writing, `placement` moves surfels into world space.
+Reading: `contents` looks at a file's first bytes. Of PLY, `ply_file` makes named columns, and `ply_contents` picks the
+layout: `surfel_ply` (every field of surfels), `gaussian_ply` (3D and 2D Gaussian splatting) or bare points. Each format
+of scans has one file, which hands out such columns in portions (`clouds`). `points` makes bare points of columns, which
+`sampling.surfels_from_points` completes. Before writing, `placement` moves surfels into world space.
 """
 
-from .contents import read_contents
+from .clouds import ReadingCancelled
+from .columns import FLOAT_COLORS
+from .contents import SUFFIXES, read_contents
 from .following import followed
 from .gaussian_ply import write_gaussian_ply
 from .gaussians import DEFAULT_FLATNESS, Gaussians, flat_gaussians, harmonic_colors
+from .offsets import middle_of, needs_offset, offset_for
 from .placement import joined, transformed
-from .point_ply import Points
+from .points import ATTRIBUTES, Points
 from .surfel_ply import PlyPortions, StoredSurfels, read_ply, write_ply
 
 __all__ = [
+    "ATTRIBUTES",
     "DEFAULT_FLATNESS",
+    "FLOAT_COLORS",
+    "SUFFIXES",
     "Gaussians",
     "PlyPortions",
     "Points",
+    "ReadingCancelled",
     "StoredSurfels",
     "flat_gaussians",
     "followed",
     "harmonic_colors",
     "joined",
+    "middle_of",
+    "needs_offset",
+    "offset_for",
     "read_contents",
     "read_ply",
     "transformed",

@@ -1,76 +1,72 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Finds out what a PLY file contains from its properties: surfels, Gaussians, or bare points."""
+"""Reads any file of points. What it is, is told by its first bytes, never by its name."""
 
 from __future__ import annotations
 
 import os
 from dataclasses import replace
 
-import numpy as np
+from . import las
+from .clouds import COLOR, Cloud, Progress, read_all
+from .columns import FLOAT_COLORS, Columns, has
+from .gaussians import DEFAULT_FLATNESS, Gaussians
+from .ply_contents import coarse_steps, read_ply_contents
+from .ply_header import is_ply, other_kind
+from .points import Points, points
+from .surfel_ply import StoredSurfels
 
-from .columns import FLOAT_COLORS, POSITION, Columns
-from .gaussian_forms import with_usual_names
-from .gaussian_ply import gaussians, is_gaussians
-from .gaussians import DEFAULT_FLATNESS, VIEW_DEPENDENT, Gaussians
-from .packed_gaussians import CHUNK, HARMONICS, is_packed, unpacked
-from .ply_file import read_element, read_vertices
-from .point_ply import Points, points
-from .surfel_ply import StoredSurfels, is_surfels, stored_surfels
+#: Bytes from which a format is told.
+_HEAD = 1 << 16
 
-#: Of how many steps of their own precision the extent of coordinates consists at least, unless they were rounded.
-_FEWEST_STEPS = 1e5
+#: name of a format -> its reader: `is_this(head)` tells it by the first bytes, `opened(path)` gives a `Cloud`.
+_SCANS = {"LAS, LAZ and COPC": las}
+
+#: Usual ends of the names of files that can be read.
+SUFFIXES = (".ply", ".las", ".laz")
 
 
 def read_contents(
-    path: str | os.PathLike, flatness: float = DEFAULT_FLATNESS, float_colors: str = FLOAT_COLORS[0]
+    path: str | os.PathLike,
+    flatness: float = DEFAULT_FLATNESS,
+    float_colors: str = FLOAT_COLORS[0],
+    progress: Progress | None = None,
 ) -> StoredSurfels | Gaussians | Points:
-    """The vertices of any PLY file. Its `said` has a sentence about each thing that was assumed or left out, such as
+    """What a file of points holds. Its `said` has a sentence about each thing that was assumed or left out, such as
     faces.
 
     flatness: maximum ratio of a Gaussian's smallest to its middle sigma for it to count as a surfel.
     float_colors: what red, green and blue mean if they are floats, a name in `FLOAT_COLORS`: sRGB display values, as
         Blender's own import takes them, or scene-linear ones.
-    Raises ValueError with one sentence for a file that is not PLY, is damaged or has no positions; OSError if it cannot
-    be read.
+    progress: called with the number of points and the share of the file so far, except for PLY.
+
+    Raises ValueError with one sentence for a file that has none of the formats, is damaged or has no positions; OSError
+    if it cannot be read; `ReadingCancelled` if `progress` returns False.
     """
     if float_colors not in FLOAT_COLORS:
         raise ValueError(f"float_colors must be one of {', '.join(FLOAT_COLORS)}, not {float_colors!r}.")
-    read, comments, others = read_vertices(path)
-    said = []
-    if is_packed(read):
-        read = unpacked(read, read_element(path, CHUNK))
-        said = [f"Took {len(read['x']):,} Gaussians from a compressed file, which rounds places, sizes and colours"]
-        said += [VIEW_DEPENDENT] * (HARMONICS in others)
-        others = {name: count for name, count in others.items() if name not in (CHUNK, HARMONICS)}
-    columns = Columns(with_usual_names(read))
-    if is_gaussians(columns):
-        contents = gaussians(columns, comments, flatness, float_colors)
-    elif is_surfels(columns):
-        contents = stored_surfels(columns, comments, float_colors)
-    else:
-        contents = points(columns, float_colors)
-    said = (*contents.said, *said, *_coarse_steps(columns), *columns.passed_over(), *_left_out(others))
-    return replace(contents, said=said)
+    with open(path, "rb") as stream:
+        head = stream.read(_HEAD)
+    if is_ply(head):
+        return read_ply_contents(path, flatness, float_colors)
+    for reader in _SCANS.values():
+        if reader.is_this(head):
+            return _points(reader.opened(path), float_colors, progress)
+    known = ", ".join(["PLY", *_SCANS])
+    raise ValueError(f"This is no file of points that can be read, which are {known}.{other_kind(head)}")
 
 
-def _coarse_steps(columns: dict[str, np.ndarray]) -> list[str]:
-    """A sentence about coordinates that were rounded before they came into the file, or nothing."""
-    axes = [columns[name] for name in POSITION]
-    finite = [axis[np.isfinite(axis)] for axis in axes if axis.dtype.kind == "f"]
-    if not all(map(len, finite)) or not finite:
+def _points(cloud: Cloud, float_colors: str, progress: Progress | None) -> Points:
+    columns = read_all(cloud, progress)
+    said = [*cloud.said, *_without_black(columns)]
+    found = points(columns, float_colors)
+    said = (*found.said, *said, *coarse_steps(columns), *columns.passed_over())
+    return replace(found, places=cloud.places, said=said)
+
+
+def _without_black(columns: Columns) -> list[str]:
+    """Remove colours that are all 0, which formats with a place for colours have where there are none; a sentence."""
+    if not has(columns, COLOR) or any(columns[name].any() for name in COLOR) or not len(columns[COLOR[0]]):
         return []
-    step = max(float(np.spacing(np.abs(axis).max())) for axis in finite)
-    extent = max(float(np.ptp(axis.astype(np.float64))) for axis in finite)
-    if not extent or extent > _FEWEST_STEPS * step:
-        return []
-    farthest = max(float(np.abs(axis).max()) for axis in finite)
-    return [
-        f"The file's positions go in steps of {step:.2g}, because it holds coordinates up to {farthest:,.0f} as "
-        f"{8 * axes[0].dtype.itemsize}-bit numbers; write double ones, or take an offset from them first"
-    ]
-
-
-def _left_out(others: dict[str, int]) -> list[str]:
-    """A sentence about elements that are not points, or nothing."""
-    what = ", ".join(f"{count:,} {name[:40]!r}" for name, count in others.items())
-    return [f"Left out what is not points: {what}; to convert faces, import them as a mesh"] if what else []
+    for name in COLOR:
+        del columns[name]
+    return ["Took the points as without colour, because all of them are black"]

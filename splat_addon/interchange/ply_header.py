@@ -92,13 +92,26 @@ def read_header(stream: BinaryIO) -> Header:
     return Header(byte_order, tuple(elements), tuple(comments), len(head), len(head.splitlines()))
 
 
+def is_ply(head: bytes) -> bool:
+    """Whether a file that begins so is a PLY file."""
+    return _first_line(head) is not None
+
+
+def other_kind(head: bytes) -> str:
+    """A sentence about a file that begins so and is known not to be one of points, after a blank; or nothing."""
+    return next((f" {what}" for begin, what in _OTHER_KINDS.items() if head.startswith(begin)), "")
+
+
+def _first_line(head: bytes) -> re.Match | None:
+    return re.match(rb"(?:%s)?\s*ply[ \t]*(\r\n|\r|\n|$)" % _BYTE_ORDER_MARK, head, re.IGNORECASE)
+
+
 def _header_lines(stream: BinaryIO) -> tuple[list[str], bytes]:
     """The lines between "ply" and "end_header", and all bytes before the data."""
     head = stream.read(MAX_HEADER)
-    first = re.match(rb"(?:%s)?\s*ply[ \t]*(\r\n|\r|\n|$)" % _BYTE_ORDER_MARK, head, re.IGNORECASE)
+    first = _first_line(head)
     if first is None:
-        kind = next((f" {what}" for begin, what in _OTHER_KINDS.items() if head.startswith(begin)), "")
-        raise ValueError(f"This is not a PLY file: it does not begin with the line 'ply'.{kind}")
+        raise ValueError(f"This is not a PLY file: it does not begin with the line 'ply'.{other_kind(head)}")
     # After a lone CR, a LF could be the first byte of the data.
     end_of_line = b"\r" if first[1] == b"\r" else b"\n"
     lines, size = [], first.end()

@@ -1,14 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """For tests inside Blender: every test starts from an empty file with the add-on registered."""
 
+import sys
+from pathlib import Path
+
 import bpy
 import numpy as np
 import pytest
 
-import splat_addon
-from splat_addon.blender.geometry.attributes import read_surfels
-from splat_addon.blender.translations.messages import messages
-from splat_addon.surfels import Surfels
+# for the writers of scans
+SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
+if str(SCRIPTS) not in sys.path:
+    sys.path.append(str(SCRIPTS))
+
+import splat_addon  # noqa: E402
+from splat_addon.blender.geometry.attributes import read_surfels  # noqa: E402
+from splat_addon.blender.translations.messages import messages  # noqa: E402
+from splat_addon.surfels import Surfels  # noqa: E402
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -18,6 +18,11 @@ def test_only_the_installed_files_are_loaded(installed):
     assert facts["files"] and all(folder.resolve() in Path(f).resolve().parents for f in facts["files"])
 
 
+def test_the_wheel_for_compressed_scans_is_installed(installed):
+    _, folder = installed
+    assert len(list(folder.rglob("site-packages/lazrs/__init__.py"))) == 1
+
+
 def test_the_checkout_is_not_on_the_path(installed):
     facts, _ = installed
     checkout = {ROOT, ROOT / "scripts", ROOT / "tests"}

@@ -33,7 +33,7 @@ def test_every_shader_is_in(files):
 
 
 def test_nothing_else_is_in(files):
-    others = [f for f in files if f.parts[0] not in ("splat_addon", "shaders", "docs") and len(f.parts) > 1]
+    others = [f for f in files if f.parts[0] not in ("splat_addon", "shaders", "docs", "wheels") and len(f.parts) > 1]
     assert others == []
 
 
@@ -56,9 +56,11 @@ def test_no_dotfile_and_no_cache_is_in(files):
     assert [f for f in files if any(part.startswith((".", "__pycache__")) for part in f.parts)] == []
 
 
-def test_no_compiled_file_is_in(files):
+def test_no_compiled_file_is_in_but_the_wheels_that_the_manifest_names(files):
+    wheels = {str(f) for f in files if f.suffix == ".whl"}
+    assert wheels == set(re.findall(r'"\./(.*\.whl)"', (ROOT / "blender_manifest.toml").read_text(encoding="utf-8")))
     # .npy is a table of numbers, which numpy reads without running anything of it
-    assert [f for f in files if f.suffix not in (".py", ".glsl", ".toml", ".md", ".npy", "")] == []
+    assert [f for f in files if f.suffix not in (".py", ".glsl", ".toml", ".md", ".npy", ".whl", "")] == []
 
 
 @pytest.fixture(scope="module")

@@ -1,10 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Random surfels, files with given bytes, and a comparison of every bit."""
 
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 
-from splat_addon.surfels import LAYOUT, Surfels
+# for the writers of scans
+SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
+if str(SCRIPTS) not in sys.path:
+    sys.path.append(str(SCRIPTS))
+
+from splat_addon.surfels import LAYOUT, Surfels  # noqa: E402
 
 
 @pytest.fixture

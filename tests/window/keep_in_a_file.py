@@ -16,7 +16,7 @@ sys.path[:0] = [str(Path(__file__).resolve().parents[2]), str(Path(__file__).res
 from steps import REPORT, in_view, is_modal, play, redrawn, until  # noqa: E402
 
 import splat_addon  # noqa: E402
-from splat_addon.blender.operators import modal_writing  # noqa: E402
+from splat_addon.blender.operators import modal_work  # noqa: E402
 from splat_addon.interchange import write_ply  # noqa: E402
 from splat_addon.reference import scenes  # noqa: E402
 
@@ -25,7 +25,7 @@ FOLDER = REPORT.with_suffix("")
 
 
 may_end = threading.Event()
-write_blocks = modal_writing.write_blocks
+write_blocks = modal_work.write_blocks
 
 
 def write_held(path, parts, progress, expected):
@@ -56,7 +56,7 @@ def steps():
     report, window = {}, bpy.context.window_manager.windows[0]
     bpy.ops.wm.save_as_mainfile(filepath=str(FOLDER / "scene.blend"))
     write_ply(FOLDER / "scan.ply", scenes.torus(COUNT)[0].surfels[0].surfels)
-    modal_writing.write_blocks = write_held
+    modal_work.write_blocks = write_held
     for name in ("cancelled", "kept"):
         may_end.clear()
         with in_view():

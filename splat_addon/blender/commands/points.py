@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`surfels points`: makes surfels of bare points and of Gaussian splats, and saves a new file."""
+"""`surfels points`: makes surfels of files, or of the points and Gaussian splats of objects, and saves a new .blend."""
 
 from __future__ import annotations
 
@@ -11,24 +11,36 @@ from pathlib import Path
 import bpy
 
 from ...claims import claimed
+from ...interchange import FLOAT_COLORS
+from ..conversion.file_import import FileImport
 from ..conversion.points_conversion import PointsBatch
 from ..conversion.points_settings import PointsProperties, keywords, viewpoint
 from ..conversion.source_record import SurfelPointsSettings
 from ..geometry.points_extraction import has_points
+from ..operators.file_paths import file_sentence
 from .convert import is_blend_there, named, place, result
 from .out_paths import made_room
 from .written_files import save_blend
 
-HELP = "make surfels of bare points, in a new file"
+HELP = "make surfels of scans and other points, in a new file"
 DESCRIPTION = (
-    "Makes a surfel of every point of point clouds and of meshes without faces, as Object > Convert Points to Surfels "
-    "does, and saves the result as a new file. The points are left out of its renders."
+    "Makes surfels of files, as File > Import does; or of every point of point clouds and of meshes without faces, as "
+    "Object > Convert Points to Surfels does, and leaves the points out of renders. It saves the result as a new file."
 )
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", required=True, help="the new .blend, or its FOLDER/")
-    parser.add_argument("--objects", nargs="+", help="names; without them all visible points")
+    source = parser.add_mutually_exclusive_group()
+    source.add_argument("files", nargs="*", default=[], metavar="FILE", help="scans, Gaussian splats or surfels")
+    source.add_argument("--objects", nargs="+", help="names; without them and files, all visible points")
+    parser.add_argument(
+        "--float-colors",
+        type=str.upper,
+        choices=FLOAT_COLORS,
+        default=FLOAT_COLORS[0],
+        help="what a file's colours mean if they are floats",
+    )
     for name in PointsProperties.__annotations__:
         setting = SurfelPointsSettings.bl_rna.properties[name]
         parser.add_argument(f"--{name.replace('_', '-')}", **_KINDS[setting.type](setting), help=setting.description)
@@ -43,13 +55,36 @@ def run(options: argparse.Namespace) -> Iterator[Path]:
         if not options.again and is_blend_there(out):
             print(f"there already: {out}", flush=True)
             return
-        sources = _sources(options.objects)
-        batch = PointsBatch(sources, keywords(options), lambda: viewpoint(options, bpy.context), options.flatness)
-        for conversion in batch.prepared(bpy.context):
-            batch.sample(conversion)
-        place(batch, options, "POINTS")
+        if options.files:
+            _import_files(options)
+        else:
+            _convert_objects(options)
         save_blend(out)
         yield out
+
+
+def _import_files(options: argparse.Namespace) -> None:
+    if not bpy.data.filepath:
+        # nothing of Blender's startup file belongs to the scan
+        bpy.ops.wm.read_homefile(use_empty=True)
+    for path in options.files:
+        work = FileImport(str(Path(path).absolute()), options, bpy.context, options.float_colors)
+        try:
+            work.run()
+            work.place(bpy.context)
+        except (ValueError, OSError) as error:
+            raise ValueError(f"{work.name}: {file_sentence(error)}") from error
+        print(f"{work.name}: {len(work.surfels):,} surfels", flush=True)
+        for note in work.notes:
+            print(f"{work.name}: {note}", flush=True)
+
+
+def _convert_objects(options: argparse.Namespace) -> None:
+    sources = _sources(options.objects)
+    batch = PointsBatch(sources, keywords(options), lambda: viewpoint(options, bpy.context), options.flatness)
+    for conversion in batch.prepared(bpy.context):
+        batch.sample(conversion)
+    place(batch, options, "POINTS")
 
 
 def _sources(names: list[str] | None) -> list[bpy.types.Object]:

@@ -94,12 +94,12 @@ def set_offset(mesh: bpy.types.Mesh, offset: np.ndarray) -> None:
 def offset_of(mesh: bpy.types.ID) -> np.ndarray:
     """What is added to the positions of a surfel mesh of the .blend, (3,) float64. What modifiers make of the mesh has
     no such property, but the same offset."""
-    return _numbers(mesh, OFFSET, 3, np.zeros(3))
+    return numbers_of(mesh, OFFSET, 3, np.zeros(3))
 
 
-def _numbers(mesh: bpy.types.ID, name: str, count: int, otherwise: np.ndarray) -> np.ndarray:
+def numbers_of(owner: bpy.types.ID, name: str, count: int, otherwise: np.ndarray) -> np.ndarray:
     """(count,) float64 of a custom property, if it holds so many finite numbers."""
-    values = np.ravel(mesh.get(name, ()))
+    values = np.ravel(owner.get(name, ()))
     is_known = values.shape == (count,) and np.issubdtype(values.dtype, np.number) and np.isfinite(values).all()
     return values.astype(np.float64) if is_known else otherwise
 
@@ -108,7 +108,7 @@ def since_written(mesh: Points) -> np.ndarray:
     """(3, 3) conversion of a surfel mesh's colours from the working space in which they were written to the file's; the
     identity if it is the same, or unknown."""
     now = working_space.to_xyz()
-    then = _numbers(mesh, PRIMARIES, 9, now.ravel())
+    then = numbers_of(mesh, PRIMARIES, 9, now.ravel())
     if np.allclose(then, now.ravel(), rtol=0, atol=_SAME_SPACE):
         return np.eye(3)
     return np.linalg.solve(now, then.reshape(3, 3))

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""File > Export > Surfels (.ply): surfel objects, as their modifiers make them, in world coordinates."""
+"""File > Export > Surfels (.ply): surfel objects, as their modifiers make them, in world coordinates plus the
+scene's offset."""
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, StringProperty
@@ -9,6 +12,7 @@ from bpy_extras.io_utils import ExportHelper
 
 from ...interchange import write_gaussian_ply, write_ply
 from ..geometry.attributes import has_surfels
+from ..geometry.scene_offset import scene_offset
 from ..geometry.surfel_files import file_of
 from ..geometry.world_surfels import world_surfels
 from ..ids import EXPORT_PLY
@@ -79,6 +83,8 @@ class EXPORT_SCENE_OT_surfels_ply(ExportHelper, bpy.types.Operator):
                     if self.use_selection
                     else said("No visible object is surfels; convert one first, or choose others")
                 )
+            offset = scene_offset(context.scene)
+            parts = [replace(part, origin=part.origin + offset) for part in parts]
             path = absolute(self.filepath)
             notes = _WRITERS[self.layout_kind](path, parts, self.ascii)
         except OSError as error:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""File > Import > Surfels (.ply): turns a file of surfels, Gaussian splats or bare points into a surfel object."""
+"""File > Import > Surfels and Scans: turns a file of surfels, Gaussian splats or points into a surfel object."""
 
 from __future__ import annotations
 
@@ -11,37 +11,34 @@ from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper, poll_file_object_drop
 from mathutils import Matrix
 
-from ...doubts import doubts
-from ...interchange import Gaussians, PlyPortions, Points, StoredSurfels, read_contents
-from ...sampling import surfels_from_points
+from ...interchange import SUFFIXES, PlyPortions
 from ...streaming import id_of
 from ...streaming.layout import SUFFIX
-from ...surfels import Surfels
+from ..conversion.file_import import FileImport
 from ..conversion.placement import placed
 from ..conversion.points_settings import (
     PointsProperties,
     draw_gaussian_properties,
     draw_points_properties,
     is_mild,
-    keywords,
-    viewpoint,
 )
-from ..conversion.surfel_objects import active_collection, add_object_of, add_surfel_object, select_only
+from ..conversion.surfel_objects import active_collection, add_object_of, select_only
 from ..geometry.attributes import offset_of, read_surfels, set_offset
+from ..geometry.scene_offset import taken_from
 from ..geometry.surfel_files import keep_coarsest, relative_path
 from ..ids import IMPORT_PLY
 from ..spoken import said
-from ..working_space import surfels_from_rec709
 from .file_paths import absolute, file_sentence, path_property
 from .menu_entry import with_menu_entry
-from .modal_writing import ModalWriting, Writing
+from .modal_work import ModalWork, Writing
 
 #: Steps of Blender's numbers that are coarse, in half-axes of the median surfel.
 _COARSE = 0.1
 
 
-class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ModalWriting, ImportHelper, bpy.types.Operator):
-    """Read surfels from a PLY file: one written by this extension, flat Gaussian splats, or any other points"""
+class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ModalWork, ImportHelper, bpy.types.Operator):
+    """Read surfels from a file: one written by this extension, Gaussian splats, or a scan; what it is, its contents \
+tell"""
 
     bl_idname = IMPORT_PLY
     bl_label = "Import Surfels"
@@ -49,7 +46,7 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ModalWriting, ImportHelper, 
 
     filename_ext = ".ply"
     filepath: path_property("reading from", is_forgotten=True)
-    filter_glob: StringProperty(default=f"*.ply;*{SUFFIX}", options={"HIDDEN"})
+    filter_glob: StringProperty(default=";".join(f"*{suffix}" for suffix in (*SUFFIXES, SUFFIX)), options={"HIDDEN"})
     keeps_in_file: BoolProperty(
         name="Keep in a File",
         description=(
@@ -98,39 +95,40 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ModalWriting, ImportHelper, 
     def execute(self, context):
         # confirmed in the file browser or a dialog; the same operator may be repeated from the redo panel
         is_asked, self._is_asked = getattr(self, "_is_asked", False), False
-        if self.keeps_in_file and not self._name.endswith(SUFFIX):
-            return self.write_in_thread(context) if is_asked else self.write_now(context)
+        if not self._name.endswith(SUFFIX):
+            return self.run_in_thread(context) if is_asked else self.run_now(context)
         try:
-            if self._name.endswith(SUFFIX):
-                count = self._open(context, absolute(self.filepath), is_own=False)
-                self.report({"INFO"}, said("{name}: {count:,} surfels", name=self._name, count=count))
-                return {"FINISHED"}
-            contents = read_contents(absolute(self.filepath), self.flatness, self.float_colors)
-            surfels, notes = _READERS[type(contents)](contents, self, context)
-            surfels = surfels_from_rec709(surfels)
-            if not len(surfels):
-                raise ValueError(f"The file gives no surfels{': ' if notes else ''}{'; '.join(notes)}.")
-            notes += doubts(surfels)
-            made = add_surfel_object(Path(self._name).stem, surfels, Matrix(), [active_collection(context)])
+            count = self._open(context, absolute(self.filepath), is_own=False)
         except Exception as error:
             return self._fail(error)
-        select_only(context, [made])
-        self.report({"INFO"}, said("{name}: {count:,} surfels", name=self._name, count=len(surfels)))
-        for note in notes:
-            self.report({"INFO" if is_mild(note) else "WARNING"}, note)
-        self._tell_place(made, surfels)
+        self.report({"INFO"}, said("{name}: {count:,} surfels", name=self._name, count=count))
         return {"FINISHED"}
 
     def _begin(self, context):
+        if not self.keeps_in_file:
+            return FileImport(absolute(self.filepath), self, context, self.float_colors)
         # repeated from the redo panel, it replaces the file whose object was undone
         own = getattr(self, "_kept", "")
         return Keeping(absolute(self.filepath), absolute(f"//{Path(self._name).stem}{SUFFIX}"), own)
 
-    def _finish(self, context, keeping):
+    def _finish(self, context, work):
+        if isinstance(work, FileImport):
+            made = work.place(context)
+            select_only(context, [made])
+            self.report({"INFO"}, said("{name}: {count:,} surfels", name=self._name, count=len(work.surfels)))
+            self._tell(work.notes)
+            self._tell_place(made, work.surfels)
+        else:
+            self._finish_keeping(context, work)
+
+    def _finish_keeping(self, context, keeping):
         count = self._open(context, keeping.path, is_own=True)
         self._kept = id_of(keeping.path)
         self.report({"INFO"}, said("{count:,} surfels -> {path}", count=count, path=keeping.path))
-        for note in keeping.notes():
+        self._tell(keeping.notes())
+
+    def _tell(self, notes):
+        for note in notes:
             self.report({"INFO" if is_mild(note) else "WARNING"}, note)
 
     def _open(self, context, path: str, is_own: bool) -> int:
@@ -138,7 +136,7 @@ class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ModalWriting, ImportHelper, 
         mesh = bpy.data.meshes.new(Path(self._name).stem)
         try:
             count, origin = keep_coarsest(mesh, path, relative_path(path), is_own)
-            place, offset = placed(Matrix(), origin)
+            place, offset = placed(Matrix(), origin - taken_from(context.scene, origin))
         except BaseException:
             bpy.data.meshes.remove(mesh)
             raise
@@ -178,33 +176,8 @@ class Keeping(Writing):
         return self._parts.notes()
 
 
-def _from_surfels(contents: StoredSurfels, properties, context) -> tuple[Surfels, list[str]]:
-    return contents.surfels, contents.notes()
-
-
-def _from_gaussians(contents: Gaussians, properties, context) -> tuple[Surfels, list[str]]:
-    return contents.surfels, contents.notes()
-
-
-def _from_points(contents: Points, properties, context) -> tuple[Surfels, list[str]]:
-    eye = viewpoint(properties, context)
-    surfels, report = surfels_from_points(
-        contents.positions,
-        contents.normals,
-        contents.radii,
-        contents.colors,
-        viewpoint=None if eye is None else tuple(eye),
-        **keywords(properties),
-    )
-    return surfels, [*report.notes(), *contents.said]
-
-
-#: What a file can contain -> function of it, the operator and the context that returns surfels and notes.
-_READERS = {StoredSurfels: _from_surfels, Gaussians: _from_gaussians, Points: _from_points}
-
-
 def draw_menu_entry(menu, context):
-    menu.layout.operator(IMPORT_PLY, text="Surfels (.ply)")
+    menu.layout.operator(IMPORT_PLY, text="Surfels and Scans (.ply, .las, ...)")
 
 
 class IO_FH_surfels_ply(bpy.types.FileHandler):
@@ -212,9 +185,9 @@ class IO_FH_surfels_ply(bpy.types.FileHandler):
     too."""
 
     bl_idname = "IO_FH_surfels_ply"
-    bl_label = "Surfels (.ply)"
+    bl_label = "Surfels and Scans"
     bl_import_operator = IMPORT_PLY
-    bl_file_extensions = f".ply;{SUFFIX}"
+    bl_file_extensions = ";".join((*SUFFIXES, SUFFIX))
 
     @classmethod
     def poll_drop(cls, context):

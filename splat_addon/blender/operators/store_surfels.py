@@ -16,7 +16,7 @@ from ..geometry.world_surfels import as_in_files
 from ..ids import STORE_SURFELS
 from ..spoken import said
 from .file_paths import absolute, path_property
-from .modal_writing import ModalWriting, Writing
+from .modal_work import ModalWork, Writing
 
 #: Letters of an object's name in that of its file: in UTF-8, and with a suffix, they fit in 255 bytes.
 _LONGEST_NAME = 50
@@ -43,7 +43,7 @@ class Storing(Writing):
         return count
 
 
-class OBJECT_OT_surfels_to_file(ModalWriting, bpy.types.Operator):
+class OBJECT_OT_surfels_to_file(ModalWork, bpy.types.Operator):
     """Move the surfels to a file beside the .blend, from which each view reads what it needs"""
 
     bl_idname = STORE_SURFELS
@@ -61,10 +61,10 @@ class OBJECT_OT_surfels_to_file(ModalWriting, bpy.types.Operator):
         return False
 
     def execute(self, context):
-        return self.write_now(context)
+        return self.run_now(context)
 
     def invoke(self, context, event):
-        return self.write_in_thread(context)
+        return self.run_in_thread(context)
 
     def _begin(self, context):
         return Storing(context.active_object, self.filepath)

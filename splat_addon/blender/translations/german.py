@@ -569,9 +569,20 @@ GERMAN = {
     "Ray Cast": "Raycast",
     "Ray Cast, as Printed": "Raycast, wie gedruckt",
     "Ray Visibility": "Strahlensichtbarkeit",
-    ("Read surfels from a PLY file: one written by this extension, flat Gaussian splats, or any other points"): (
-        "Surfels aus einer PLY-Datei lesen: aus einer von dieser Erweiterung geschriebenen, aus flachen "
-        "Gaussian Splats oder aus beliebigen anderen Punkten"
+    (
+        "Read surfels from a file: one written by this extension, Gaussian splats, or a scan; what it is, its contents "
+        "tell"
+    ): (
+        "Surfels aus einer Datei lesen: aus einer von dieser Erweiterung geschriebenen, aus Gaussian Splats oder aus "
+        "einem Scan; was sie ist, sagt ihr Inhalt"
+    ),
+    "Surfels and Scans": "Surfels und Scans",
+    "Surfels and Scans (.ply, .las, ...)": "Surfels und Scans (.ply, .las, ...)",
+    "Offset of the coordinates: {offset}": "Versatz der Koordinaten: {offset}",
+    "Reading {count:,} points   Esc cancels": "{count:,} Punkte gelesen   Esc bricht ab",
+    "The import was cancelled; nothing was changed": "Der Import wurde abgebrochen; nichts wurde verändert",
+    "Took {offset} from the coordinates; later files share that offset": (
+        "{offset} von den Koordinaten abgezogen; spätere Dateien haben denselben Versatz"
     ),
     "Reduction": "Reduktion",
     "Render Meshes as": "Meshes als",

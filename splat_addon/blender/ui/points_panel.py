@@ -6,8 +6,11 @@ from __future__ import annotations
 import bpy
 
 from ..doors import register_classes_factory
+from ..geometry.scene_offset import scene_offset, shown
 from ..ids import EXPORT_PLY, IMPORT_PLY, POINTS_PANEL, SIDEBAR_TAB, SURFELS_FROM_POINTS
 from ..operators.surfels_from_points import selected_points
+from ..spoken import said
+from .wrapped_text import write
 
 
 class VIEW3D_PT_surfels_from_points(bpy.types.Panel):
@@ -28,6 +31,9 @@ class VIEW3D_PT_surfels_from_points(bpy.types.Panel):
         row.operator_context = "INVOKE_DEFAULT"
         row.operator(IMPORT_PLY, icon="IMPORT")
         row.operator(EXPORT_PLY, icon="EXPORT")
+        offset = scene_offset(context.scene)
+        if offset.any():
+            write(self.layout, said("Offset of the coordinates: {offset}", offset=shown(offset)), context, "INFO")
 
 
 register, unregister = register_classes_factory((VIEW3D_PT_surfels_from_points,))

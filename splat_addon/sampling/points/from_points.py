@@ -94,7 +94,8 @@ def surfels_from_points(
     arrays = {name: array[keep][rank] for name, array in surfels.items()}
     positions = given["positions"][keep][rank]
     middle = _middle(positions)
-    return Surfels(positions=positions - middle, origin=middle, **arrays), replace(report, surfels=len(rank))
+    report = replace(report, surfels=len(rank), kept=order[keep][rank])
+    return Surfels(positions=positions - middle, origin=middle, **arrays), report
 
 
 def _middle(positions: np.ndarray) -> np.ndarray:

@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+
+import numpy as np
 
 #: Colours above this are reported: no surface reflects them, but floats from 0 to 255 are common.
 BRIGHT_COLOR = 10.0
@@ -18,6 +20,7 @@ class PointsReport:
     bright_colors: surfels whose colour is far above white.
     parts: connected parts, each oriented as a whole; 0 if no normal was estimated.
     creases: surfels that end at an edge between planes through their neighbours.
+    kept: (surfels,) which of the points became surfels, ascending; None before that is known.
     """
 
     points: int
@@ -32,6 +35,7 @@ class PointsReport:
     bright_colors: int = 0
     parts: int = 0
     creases: int = 0
+    kept: np.ndarray | None = field(default=None, compare=False, repr=False)
 
     def skipped(self) -> dict[str, int]:
         """reason -> number of points left out for it; only reasons that occurred."""

@@ -10,6 +10,7 @@ from mathutils import Matrix
 
 from splat_addon.blender.export.live_meshes import LiveMeshes
 from splat_addon.blender.export.scene import SurfelStore, export_scene
+from splat_addon.blender.geometry.scene_offset import scene_offset
 from splat_addon.interchange import read_contents, read_ply, write_ply
 from splat_addon.surfels import Surfels
 
@@ -125,7 +126,8 @@ def test_bare_points_of_a_survey_lie_on_their_places(imported, exported, tmp_pat
     head = ["ply", "format ascii 1.0", "element vertex 9", *(f"property double {n}" for n in "xyz"), "end_header"]
     (tmp_path / "p.ply").write_text("\n".join([*head, *(" ".join(map(repr, map(float, p))) for p in points), ""]))
     bpy.ops.import_scene.surfels_ply(filepath=str(tmp_path / "p.ply"), isolated="KEEP")
-    assert np.abs(drawn()[0] - points).max() < 1e-7 and np.abs(places(exported()) - points).max() < 1e-7
+    assert np.abs(drawn()[0] + scene_offset(bpy.context.scene) - points).max() < 1e-7
+    assert np.abs(places(exported()) - points).max() < 1e-7
     assert np.abs(places(exported(layout_kind="GAUSSIANS")) - points).max() < 1e-7
 
 

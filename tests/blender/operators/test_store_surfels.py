@@ -11,7 +11,7 @@ import pytest
 from splat_addon.blender.export.streams import Streams
 from splat_addon.blender.geometry import surfel_files
 from splat_addon.blender.geometry.attributes import write_surfels
-from splat_addon.blender.operators import import_ply, modal_writing
+from splat_addon.blender.operators import import_ply, modal_work
 from splat_addon.blender.operators.store_surfels import Storing
 from splat_addon.interchange import write_ply
 from splat_addon.streaming import BlockFile, Stream, WritingCancelled, id_of, write_blocks
@@ -178,7 +178,7 @@ def test_cancelling_leaves_everything_as_it_was(ball, saved, surfels_of):
     storing, count = Storing(ball, ""), len(surfels_of(ball))
     storing.is_cancelled = True
     with pytest.raises(WritingCancelled):
-        storing.write()
+        storing.run()
     assert [path.name for path in saved.iterdir()] == ["scene.blend"]
     assert len(surfels_of(ball)) == count and not ball.data.surfel_splatting.file
 
@@ -190,7 +190,7 @@ class Pressed:
         self.type = kind
 
 
-class Operator(modal_writing.ModalWriting):
+class Operator(modal_work.ModalWork):
     """The mix-in as Blender runs it from a button."""
 
     def __init__(self, writing):
@@ -209,7 +209,7 @@ class Operator(modal_writing.ModalWriting):
 @pytest.fixture
 def window(monkeypatch):
     """A context with what `modal` asks of a window, and texts of its status bar."""
-    monkeypatch.setattr(modal_writing, "bpy", SimpleNamespace(app=SimpleNamespace(background=False)))
+    monkeypatch.setattr(modal_work, "bpy", SimpleNamespace(app=SimpleNamespace(background=False)))
     texts, calls = [], SimpleNamespace(event_timer_add=lambda *_, **__: 1, event_timer_remove=lambda _: None)
     calls.modal_handler_add = lambda _: None
     return SimpleNamespace(
@@ -221,10 +221,10 @@ def window(monkeypatch):
 def test_esc_cancels_keeping_a_file(is_pressed, opaque, saved, window):
     write_ply(saved / "scan.ply", opaque(3000))
     keeping, may_go = import_ply.Keeping(str(saved / "scan.ply"), str(saved / "scan.surfelblocks")), Event()
-    write = keeping.write
-    keeping.write = lambda: (may_go.wait(10), write(lambda share: None))
+    run = keeping.run
+    keeping.run = lambda: (may_go.wait(10), run(lambda share: None))
     operator = Operator(keeping)
-    assert operator.write_in_thread(window) == {"RUNNING_MODAL"}
+    assert operator.run_in_thread(window) == {"RUNNING_MODAL"}
     if is_pressed:
         assert operator.modal(window, Pressed("ESC")) == {"RUNNING_MODAL"}
     may_go.set()
@@ -244,7 +244,7 @@ def test_ctrl_c_in_the_background_leaves_nothing(opaque, saved, monkeypatch):
 
     monkeypatch.setattr("splat_addon.streaming.writing.build_hierarchy", press)
     with pytest.raises(KeyboardInterrupt):
-        Operator(import_ply.Keeping(str(saved / "scan.ply"), str(saved / "scan.surfelblocks"))).write_now(bpy.context)
+        Operator(import_ply.Keeping(str(saved / "scan.ply"), str(saved / "scan.surfelblocks"))).run_now(bpy.context)
     assert sorted(path.name for path in saved.iterdir()) == ["scan.ply", "scene.blend"]
     assert not bpy.data.meshes
 
@@ -270,8 +270,8 @@ def test_a_second_ply_file_of_the_same_name_is_kept_in_another_file(opaque, save
 def test_a_repeated_import_replaces_the_file_of_the_undone_one(opaque, saved):
     path = str(saved / "scan.surfelblocks")
     write_ply(saved / "scan.ply", opaque(100))
-    import_ply.Keeping(str(saved / "scan.ply"), path).write()
-    import_ply.Keeping(str(saved / "scan.ply"), path, id_of(path)).write()
+    import_ply.Keeping(str(saved / "scan.ply"), path).run()
+    import_ply.Keeping(str(saved / "scan.ply"), path, id_of(path)).run()
     assert counts(saved) == {"scan.surfelblocks": 100}
 
 

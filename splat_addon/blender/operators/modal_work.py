@@ -1,20 +1,42 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shared by the operators that write a file of surfels in blocks: from a button, a dialog or the file browser, a thread
-writes, so that the window shows progress and Esc cancels; from a script or in background mode, `execute` does."""
+"""Shared by the operators that read and write large files: from a button, a dialog or the file browser, a thread works,
+so that the window shows progress and Esc cancels; from a script or in background mode, `execute` does."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
+from typing import Protocol
 
 import bpy
 
+from ...interchange import ReadingCancelled
+from ...sampling import SamplingCancelled
 from ...streaming import WritingCancelled, own_file, write_blocks
 from ...surfels import Surfels
 from ..spoken import said
 from .file_paths import file_sentence
 
 _TIMER_SECONDS = 0.1
+
+#: What ends work that was cancelled.
+_CANCELLED = (ReadingCancelled, SamplingCancelled, WritingCancelled)
+
+
+class Work(Protocol):
+    """What runs in the thread. share: the finished share. is_cancelled: set from outside."""
+
+    share: float
+    is_cancelled: bool
+
+    def run(self, told: Callable[[float], None] = ...) -> None:
+        """Work to the end, in any thread. Raises OSError, ValueError, or one of `_CANCELLED`."""
+
+    def status(self) -> str:
+        """What the status bar shows."""
+
+    def cancelled(self) -> str:
+        """What is reported after Esc."""
 
 
 class Writing:
@@ -29,7 +51,7 @@ class Writing:
         self.share, self.is_cancelled = 0.0, False
         self._parts, self._expected = parts, expected
 
-    def write(self, told: Callable[[float], None] = lambda share: None) -> None:
+    def run(self, told: Callable[[float], None] = lambda share: None) -> None:
         """Write the file, from any thread. Raises OSError, ValueError, WritingCancelled."""
 
         def progress(share: float, step: str) -> bool:
@@ -40,66 +62,71 @@ class Writing:
         with own_file(self.path, self._own) as self.path:
             write_blocks(self.path, self._parts, progress, expected=self._expected)
 
+    def status(self) -> str:
+        return said("Storing surfels: {percent:.0f}%   Esc cancels", percent=100 * self.share)
 
-class ModalWriting:
+    def cancelled(self) -> str:
+        return said("Storing was cancelled; nothing was changed")
+
+
+class ModalWork:
     """A mix-in for operators. Nothing is changed in Blender before `_finish`."""
 
     _timer = None
 
-    def _begin(self, context: bpy.types.Context) -> Writing:
-        """The file to write. Raises OSError or ValueError with a sentence."""
+    def _begin(self, context: bpy.types.Context) -> Work:
+        """What to do. Raises OSError or ValueError with a sentence."""
         raise NotImplementedError
 
-    def _finish(self, context: bpy.types.Context, writing: Writing) -> None:
-        """Use the complete file, and report. Raises OSError or ValueError with a sentence."""
+    def _finish(self, context: bpy.types.Context, work: Work) -> None:
+        """Use what is complete, and report. Raises OSError or ValueError with a sentence."""
         raise NotImplementedError
 
     def _sentence(self, error: Exception) -> str:
         return file_sentence(error)
 
-    def write_now(self, context: bpy.types.Context) -> set[str]:
-        """Write to the end. Whatever ends it early, Ctrl-C too, leaves neither a file nor any other change."""
+    def run_now(self, context: bpy.types.Context) -> set[str]:
+        """Work to the end. Whatever ends it early, Ctrl-C too, leaves neither a file nor any other change."""
         manager = context.window_manager
         manager.progress_begin(0.0, 1.0)
         try:
-            writing = self._begin(context)
-            writing.write(manager.progress_update)
-            self._finish(context, writing)
+            work = self._begin(context)
+            work.run(manager.progress_update)
+            self._finish(context, work)
         except Exception as error:
             return self._fail(error)
         finally:
             manager.progress_end()
         return {"FINISHED"}
 
-    def write_in_thread(self, context: bpy.types.Context) -> set[str]:
-        """Begin writing; `modal` goes on."""
+    def run_in_thread(self, context: bpy.types.Context) -> set[str]:
+        """Begin; `modal` goes on."""
         if bpy.app.background:
-            return self.write_now(context)
+            return self.run_now(context)
         try:
-            self._writing = self._begin(context)
+            self._work = self._begin(context)
         except Exception as error:
             return self._fail(error)
         self._executor = ThreadPoolExecutor(1)
-        self._written = self._executor.submit(self._writing.write)
+        self._done = self._executor.submit(self._work.run)
         self._timer = context.window_manager.event_timer_add(_TIMER_SECONDS, window=context.window)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
     def modal(self, context, event):
         if event.type == "ESC":
-            self._writing.is_cancelled = True
+            self._work.is_cancelled = True
         if event.type != "TIMER":
             return {"RUNNING_MODAL"}
-        percent = 100 * self._writing.share
-        context.workspace.status_text_set(said("Storing surfels: {percent:.0f}%   Esc cancels", percent=percent))
-        if not self._written.done():
+        context.workspace.status_text_set(self._work.status())
+        if not self._done.done():
             return {"RUNNING_MODAL"}
         self._end_modal(context)
         try:
-            self._written.result()
-            self._finish(context, self._writing)
-        except WritingCancelled:
-            self.report({"INFO"}, said("Storing was cancelled; nothing was changed"))
+            self._done.result()
+            self._finish(context, self._work)
+        except _CANCELLED:
+            self.report({"INFO"}, self._work.cancelled())
             return {"CANCELLED"}
         except Exception as error:
             return self._fail(error)
@@ -107,8 +134,8 @@ class ModalWriting:
 
     def cancel(self, context):
         """Blender calls this when it closes or loads another file."""
-        if hasattr(self, "_writing"):
-            self._writing.is_cancelled = True
+        if hasattr(self, "_work"):
+            self._work.is_cancelled = True
             self._end_modal(context)
 
     def _end_modal(self, context):

@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A file of surfels, Gaussians or points on its way to a surfel object, for the importing operator and the command."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import bpy
+from mathutils import Matrix
+
+from ...doubts import doubts
+from ...interchange import Points, read_contents
+from ...sampling import surfels_from_points
+from ...surfels import Surfels
+from ..geometry.scan_attributes import write_scan_attributes
+from ..geometry.scene_offset import keep_offset, offset_for_scan, scene_offset, taken_from
+from ..spoken import said
+from ..working_space import surfels_from_rec709
+from .points_settings import PointsProperties, keywords, viewpoint
+from .surfel_objects import active_collection, add_surfel_object
+
+#: Share of the time that reading takes; the rest is for normals and radii.
+_READING = 0.2
+
+
+class FileImport:
+    """`run` reads the file, in any thread; `place` then adds the object.
+
+    share: the finished share. points: how many were read so far. is_cancelled: set from outside.
+    """
+
+    def __init__(self, path: str, properties: PointsProperties, context: bpy.types.Context, float_colors: str):
+        self.name, self._path = Path(path).name, path
+        self._keywords, self._flatness, self._colors = keywords(properties), properties.flatness, float_colors
+        self._eye, self._offset = viewpoint(properties, context), scene_offset(context.scene)
+        self._attributes, self._rows = {}, None
+        self.share, self.points, self.is_cancelled = 0.0, 0, False
+        self.notes: list[str] = []
+
+    def run(self, told: Callable[[float], None] = lambda share: None) -> None:
+        """Read the file and convert its points. Raises ValueError with a sentence, OSError, ReadingCancelled,
+        SamplingCancelled."""
+
+        def reading(points: int, share: float) -> bool:
+            self.points = points
+            return self._go_on(_READING * share, told)
+
+        contents = read_contents(self._path, self._flatness, self._colors, reading)
+        if isinstance(contents, Points):
+            self.surfels = self._surfels_of(contents, told)
+        else:
+            self.surfels, self._offset = contents.surfels, None
+            self.notes += contents.notes()
+        if not len(self.surfels):
+            raise ValueError(f"The file gives no surfels{': ' if self.notes else ''}{'; '.join(self.notes)}.")
+        self.notes += doubts(self.surfels)
+
+    def _go_on(self, share: float, told: Callable[[float], None]) -> bool:
+        self.share = share
+        told(share)
+        return not self.is_cancelled
+
+    def _surfels_of(self, points: Points, told: Callable[[float], None]) -> Surfels:
+        """Surfels in the scene's coordinates; the offset that was taken, the attributes and the notes are kept."""
+        self.points = len(points.positions)
+        self._offset = offset_for_scan(self._offset, points.positions)
+        surfels, report = surfels_from_points(
+            points.positions - self._offset,
+            points.normals,
+            points.radii,
+            points.colors,
+            viewpoint=None if self._eye is None else tuple(self._eye),
+            progress=lambda share: self._go_on(_READING + (1 - _READING) * share, told),
+            **self._keywords,
+        )
+        self._attributes, self._rows = points.attributes, report.kept
+        self.notes += [*report.notes(), *points.said]
+        return surfels
+
+    def place(self, context: bpy.types.Context) -> bpy.types.Object:
+        """Add the surfel object to the active collection. Raises ValueError as `placed`."""
+        surfels = surfels_from_rec709(self.surfels)
+        if self._offset is None:
+            offset = taken_from(context.scene, surfels.origin)
+            surfels = replace(surfels, origin=surfels.origin - offset)
+        elif note := keep_offset(context.scene, self._offset):
+            self.notes.append(note)
+        made = add_surfel_object(Path(self.name).stem, surfels, Matrix(), [active_collection(context)])
+        write_scan_attributes(made.data, self._attributes, self._rows)
+        return made
+
+    def status(self) -> str:
+        """What the status bar shows."""
+        if self.share <= _READING:
+            return said("Reading {count:,} points   Esc cancels", count=self.points)
+        return said("Converting to surfels: {percent:.0f}%   Esc cancels", percent=100 * self.share)
+
+    def cancelled(self) -> str:
+        return said("The import was cancelled; nothing was changed")

@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What scanners measure besides places and colours, as attributes of the surfels that were made of a scan's points."""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+
+from ..ids import TIME_START
+
+#: Blender has no 64-bit numbers in attributes, so that times are counted from the first one.
+_TIME = "gps_time"
+
+
+def write_scan_attributes(mesh: bpy.types.Mesh, attributes: dict[str, np.ndarray], rows: np.ndarray) -> None:
+    """Add attributes to a mesh of surfels: integers as INT, others as FLOAT. attributes: (N,) by name, of the points.
+    rows: which point each surfel was made of."""
+    for name, values in attributes.items():
+        values = values[rows]
+        if name == _TIME and len(values):
+            finite = values[np.isfinite(values)]
+            start = float(finite.min()) if len(finite) else 0.0
+            mesh[TIME_START], values = start, values - start
+        is_whole = values.dtype.kind in "iub"
+        kind, dtype = ("INT", np.int32) if is_whole else ("FLOAT", np.float32)
+        with np.errstate(over="ignore", invalid="ignore"):
+            column = np.ascontiguousarray(values.astype(dtype))
+        mesh.attributes.new(name, kind, "POINT").data.foreach_set("value", column)

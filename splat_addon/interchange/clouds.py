@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the readers of scans have in common: they hand out the points of a file in portions of named columns, as if it
+were a PLY file, so that `points` understands all formats alike.
+
+| column | meaning |
+|---|---|
+| x y z | float64, in the coordinates of the file |
+| red green blue | display colours, integers of 8 or 16 bits |
+| nx ny nz | normals |
+| intensity, classification, return_number, number_of_returns, gps_time | as scanners give them |
+| scan | number of the scan in the file, from 0; `Cloud.places` says where its scanner stood |
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from .columns import NORMAL, POSITION, Columns
+
+#: Named columns of equal length.
+Table = dict[str, np.ndarray]
+
+#: progress(points so far, share of the file so far) -> whether to go on.
+Progress = Callable[[int, float], bool]
+
+#: Points, and bytes of the file, that a portion has at most.
+PORTION, PORTION_BYTES = 1 << 18, 1 << 25
+
+COLOR = ("red", "green", "blue")
+
+
+class ReadingCancelled(Exception):
+    """`progress` returned False."""
+
+
+@dataclass(eq=False)
+class Cloud:
+    """The points of an opened file.
+
+    portions: the share of the file that was read so far, and the next points; raises ValueError with a sentence.
+    places: scan number -> (3,) float64 where its scanner stood. said: sentences about what was assumed or left out.
+    Both are complete when all portions were read.
+    """
+
+    portions: Iterator[tuple[float, Table]]
+    places: dict[int, np.ndarray] = field(default_factory=dict)
+    said: list[str] = field(default_factory=list)
+
+
+def read_all(cloud: Cloud, progress: Progress | None = None) -> Columns:
+    """All points of a cloud. Raises `ReadingCancelled`, and ValueError with a sentence."""
+    tables, count = [], 0
+    for share, table in cloud.portions:
+        tables.append(table)
+        count += len(table[POSITION[0]])
+        if progress is not None and not progress(count, share):
+            raise ReadingCancelled
+    names = dict.fromkeys(name for table in tables for name in table)
+    return Columns({name: _joined(tables, name) for name in names or POSITION})
+
+
+def _joined(tables: list[Table], name: str) -> np.ndarray:
+    """A column of all tables; those that lack it have no number there."""
+    parts = [table.pop(name, None) for table in tables]
+    missing = np.nan if name in COLOR else 0
+    lengths = [_length(table, part) for table, part in zip(tables, parts, strict=True)]
+    parts = [np.full(n, missing) if part is None else part for n, part in zip(lengths, parts, strict=True)]
+    return np.concatenate(parts) if parts else np.empty(0)
+
+
+def _length(table: Table, part: np.ndarray | None) -> int:
+    return len(next(iter(table.values()))) if part is None else len(part)
+
+
+def without(table: Table, left_out: np.ndarray) -> Table:
+    """The rows that are not left out; left_out: (N,) bool."""
+    return {name: column[~left_out] for name, column in table.items()} if left_out.any() else table
+
+
+def placed(points: np.ndarray, matrix: np.ndarray) -> np.ndarray:
+    """(N, 3) float64 points under a (4, 4) map that is multiplied from the left."""
+    return points @ matrix[:3, :3].T + matrix[:3, 3]
+
+
+def as_table(positions: np.ndarray, normals: np.ndarray | None = None) -> Table:
+    """Columns of (N, 3) positions and normals."""
+    table = dict(zip(POSITION, np.ascontiguousarray(positions.T), strict=True))
+    return table if normals is None else table | dict(zip(NORMAL, np.ascontiguousarray(normals.T), strict=True))

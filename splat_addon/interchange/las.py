@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Reads LAS 1.0 to 1.4 (ASPRS), and LAZ and COPC, which are LAS with compressed points.
+
+Only the decompression needs a module, lazrs, whose wheels the extension brings. A COPC file is read as the LAZ file
+that it is, so its order does not matter. Sizes are checked against the file before anything is allocated.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import BinaryIO
+
+import numpy as np
+
+from .clouds import COLOR, PORTION, PORTION_BYTES, Cloud, Table, without
+from .laz import decompressor
+
+SIGNATURE = b"LASF"
+
+#: The first bytes of the header, which all versions have; sizes in bytes by version.
+_HEADER = np.dtype(
+    {
+        "names": ["major", "minor", "size", "points", "vlrs", "format", "length", "count", "scale", "offset"],
+        "formats": ["u1", "u1", "<u2", "<u4", "<u4", "u1", "<u2", "<u4", ("<f8", 3), ("<f8", 3)],
+        "offsets": [24, 25, 94, 96, 100, 104, 105, 107, 131, 155],
+        "itemsize": 227,
+    }
+)
+#: Where version 1.4 has the number of points, in a header of at least this size.
+_COUNT_14, _SIZE_14 = 247, 375
+
+#: Bits of the point format that say that points are compressed.
+_COMPRESSED = 0xC0
+
+#: The head of a variable length record.
+_RECORD = np.dtype([("reserved", "<u2"), ("user", "S16"), ("number", "<u2"), ("length", "<u2"), ("description", "S32")])
+_LAZ_USER, _LAZ_NUMBER = b"laszip encoded", 22204
+
+_PLACE = [("X", "<i4"), ("Y", "<i4"), ("Z", "<i4"), ("intensity", "<u2")]
+_OLD = [*_PLACE, ("returns", "u1"), ("class", "u1"), ("angle", "i1"), ("user", "u1"), ("source", "<u2")]
+_NEW = [*_PLACE, ("returns", "u1"), ("flags", "u1"), ("class", "u1"), ("user", "u1"), ("angle", "<i2")]
+_NEW += [("source", "<u2"), ("gps_time", "<f8")]
+_TIME, _COLORS, _INFRARED = [("gps_time", "<f8")], [(name, "<u2") for name in COLOR], [("infrared", "<u2")]
+_WAVE = [("wave", "V29")]
+
+#: point format -> fields of a point; those from 6 on are of version 1.4
+POINT_FORMATS = [_OLD, _OLD + _TIME, _OLD + _COLORS, _OLD + _TIME + _COLORS, _OLD + _TIME + _WAVE]
+POINT_FORMATS += [_OLD + _TIME + _COLORS + _WAVE, _NEW, _NEW + _COLORS, _NEW + _COLORS + _INFRARED, _NEW + _WAVE]
+POINT_FORMATS += [_NEW + _COLORS + _INFRARED + _WAVE]
+_FIRST_NEW = 6
+
+#: Bits: the class in old formats, and a point that its owner deleted, in both.
+_OLD_CLASS, _OLD_WITHHELD, _NEW_WITHHELD = 0x1F, 0x80, 0x04
+
+
+@dataclass(frozen=True)
+class _Header:
+    """points: where they begin. count: how many the file says. record: numpy's type of one. format: 0 to 10. scale,
+    offset: (3,). laszip: the description of the compression, None where there is none."""
+
+    points: int
+    count: int
+    record: np.dtype
+    format: int
+    scale: np.ndarray
+    offset: np.ndarray
+    laszip: bytes | None
+
+
+def is_this(head: bytes) -> bool:
+    return head.startswith(SIGNATURE)
+
+
+def opened(path: str | os.PathLike) -> Cloud:
+    """The points of the file. Raises ValueError with a sentence, OSError."""
+    with open(path, "rb") as stream:
+        header = _read_header(stream, os.path.getsize(path))
+    cloud = Cloud(iter(()))
+    cloud.portions = _portions(path, header, cloud.said)
+    return cloud
+
+
+def _portions(path: str | os.PathLike, header: _Header, said: list[str]) -> Iterator[tuple[float, Table]]:
+    most = max(1, min(PORTION, PORTION_BYTES // header.record.itemsize))
+    done = withheld = 0
+    with open(path, "rb") as stream:
+        read = _reader(stream, os.path.getsize(path), header)
+        for first in range(0, header.count, most):
+            rows = np.frombuffer(read(min(most, header.count - first), first), header.record)
+            table, deleted = _table(rows, header)
+            done, withheld = done + len(rows), withheld + int(deleted.sum())
+            yield done / header.count, without(table, deleted)
+    if withheld:
+        said.append(f"Left out {withheld:,} points that the file marks as deleted (withheld)")
+
+
+def _reader(stream: BinaryIO, size: int, header: _Header) -> Callable[[int, int], bytes]:
+    """read(count, first) -> the bytes of the next points, of which `first` were read already."""
+    stream.seek(header.points)
+    if header.laszip is not None:
+        return decompressor(stream, size, header.laszip, header.record.itemsize, header.count)
+    length = header.record.itemsize
+    if header.count * length > size - header.points:
+        raise ValueError(
+            f"The LAS file says that it has {header.count:,} points of {length} bytes, but only "
+            f"{max(size - header.points, 0):,} bytes are left for them; it is cut off or damaged."
+        )
+    return lambda count, first: stream.read(count * length)
+
+
+def _table(rows: np.ndarray, header: _Header) -> tuple[Table, np.ndarray]:
+    """The columns of rows of a file, and (N,) bool: which of them are deleted."""
+    is_new = header.format >= _FIRST_NEW
+    bits, mask = (4, 0x0F) if is_new else (3, 0x07)
+    with np.errstate(over="ignore", invalid="ignore"):
+        axes = zip("xyz", header.scale, header.offset, strict=True)
+        table = {axis: rows[axis.upper()] * scale + offset for axis, scale, offset in axes}
+    table["intensity"] = rows["intensity"].astype(np.uint16)
+    table["return_number"] = rows["returns"] & mask
+    table["number_of_returns"] = (rows["returns"] >> bits) & mask
+    table["classification"] = rows["class"] if is_new else rows["class"] & _OLD_CLASS
+    for name in ("gps_time", *COLOR):
+        if name in rows.dtype.names:
+            table[name] = rows[name].astype(rows[name].dtype.newbyteorder("="))
+    flags, withheld = (rows["flags"], _NEW_WITHHELD) if is_new else (rows["class"], _OLD_WITHHELD)
+    return table, (flags & withheld) != 0
+
+
+def _read_header(stream: BinaryIO, size: int) -> _Header:
+    head = stream.read(_SIZE_14)
+    if len(head) < _HEADER.itemsize:
+        raise ValueError(f"The LAS file ends in its header, after {len(head)} bytes; it is cut off.")
+    fields = np.frombuffer(head, _HEADER, 1)[0]
+    version, number = f"{fields['major']}.{fields['minor']}", int(fields["format"]) & ~_COMPRESSED
+    if fields["major"] != 1 or fields["minor"] > 4 or number >= len(POINT_FORMATS):
+        raise ValueError(
+            f"This LAS file has version {version} and point format {number}; versions 1.0 to 1.4 with formats 0 to "
+            f"{len(POINT_FORMATS) - 1} can be read."
+        )
+    fields_of_point, length = np.dtype(POINT_FORMATS[number]), int(fields["length"])
+    if length < fields_of_point.itemsize or not int(fields["size"]) <= fields["points"] <= size:
+        raise ValueError(
+            f"The LAS header says that points of format {number} have {length} bytes and begin at byte "
+            f"{int(fields['points']):,} of {size:,}, which cannot be; the file is damaged."
+        )
+    scale, offset = (fields[name].astype(np.float64) for name in ("scale", "offset"))
+    if not (np.isfinite(scale).all() and scale.all() and np.isfinite(offset).all()):
+        raise ValueError(f"The LAS header has the scale {scale} and the offset {offset}; the file is damaged.")
+    count = int(fields["count"])
+    if fields["minor"] == 4 and fields["size"] >= _SIZE_14 and len(head) == _SIZE_14:
+        count = int.from_bytes(head[_COUNT_14 : _COUNT_14 + 8], "little") or count
+    record = np.dtype([*POINT_FORMATS[number], ("extra", f"V{length - fields_of_point.itemsize}")])
+    laszip = None
+    if fields["format"] & _COMPRESSED:
+        laszip = _laszip_record(stream, int(fields["size"]), int(fields["points"]), int(fields["vlrs"]))
+    return _Header(int(fields["points"]), count, record, number, scale, offset, laszip)
+
+
+def _laszip_record(stream: BinaryIO, start: int, end: int, count: int) -> bytes:
+    """The description of the compression, among the records before the points."""
+    stream.seek(start)
+    for _ in range(count):
+        head = stream.read(_RECORD.itemsize)
+        if len(head) < _RECORD.itemsize or stream.tell() > end:
+            break
+        record = np.frombuffer(head, _RECORD)[0]
+        data = stream.read(int(record["length"]))
+        if record["user"] == _LAZ_USER and record["number"] == _LAZ_NUMBER:
+            return data
+    raise ValueError("The LAZ file does not say how its points are compressed; it is damaged.")

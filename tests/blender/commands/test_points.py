@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`surfels points` makes a new .blend of files, without one that is open."""
+
+import bpy
+import numpy as np
+
+from splat_addon.blender.geometry.attributes import read_surfels
+
+
+def plane(path, start):
+    """A PLY file of 15 by 15 points."""
+    points = [(start + x, y, 0) for x in range(15) for y in range(15)]
+    head = ["ply", "format ascii 1.0", "element vertex 225", *(f"property double {n}" for n in "xyz"), "end_header"]
+    path.write_text("\n".join([*head, *(" ".join(map(str, point)) for point in points), ""]))
+
+
+def test_files_become_surfels_in_a_new_blend(surfels_command, tmp_path):
+    bpy.ops.wm.read_factory_settings(use_empty=False)
+    for name, start in (("a.xyz", 0), ("b.ply", 20)):
+        plane(tmp_path / name, start)
+    files = [tmp_path / "a.xyz", tmp_path / "b.ply"]
+    code, said = surfels_command("points", *files, "--neighbours", 8, "--out", tmp_path / "scan.blend")
+    assert code == 0 and "a.xyz: 225 surfels" in said and "b.ply: Estimated normals" in said
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "scan.blend"))
+    assert sorted(made.name for made in bpy.data.objects) == ["a", "b"]
+    found = [read_surfels(made.data)[0] for made in bpy.data.objects]
+    assert [len(surfels) for surfels in found] == [225, 225]
+    assert np.abs(found[0].geometric_normals()[:, 2]).min() > 0.99
+
+
+def test_a_file_that_cannot_be_read_is_named_and_nothing_is_saved(surfels_command, tmp_path):
+    (tmp_path / "bad.las").write_bytes(b"LASF")
+    code, said = surfels_command("points", tmp_path / "bad.las", "--out", tmp_path / "scan.blend")
+    assert code == 1 and "bad.las: The LAS file ends in its header" in said and not (tmp_path / "scan.blend").exists()
+    code, said = surfels_command("points", tmp_path / "none.las", "--out", tmp_path / "scan.blend")
+    assert code == 1 and "none.las: No such file" in said

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Scans become surfels in the scene's coordinates, with what scanners measure as attributes, and go back."""
+
+import bpy
+import numpy as np
+import pytest
+
+from bench.scan_files import las_file
+from splat_addon.blender.geometry.scan_attributes import write_scan_attributes
+from splat_addon.blender.geometry.scene_offset import scene_offset
+from splat_addon.interchange import read_contents
+
+FINE = (0.0001, 0.0001, 0.0001)
+ROW = [("X", "<i4"), ("Y", "<i4"), ("Z", "<i4"), ("intensity", "<u2"), ("returns", "u1"), ("class", "u1")]
+ROW += [("angle", "i1"), ("user", "u1"), ("source", "<u2"), ("gps_time", "<f8"), ("extra", "V0")]
+
+
+def tile(corner):
+    """A file of 20 by 20 points a metre apart, and (400, 3) their coordinates."""
+    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(20), np.arange(20)))
+    rows = np.zeros(400, ROW)
+    rows["X"], rows["Y"], rows["Z"] = 10000 * x + 1234, 10000 * y + 5, 10000 * np.sin(x)
+    rows["intensity"], rows["returns"], rows["class"] = 7 * x, 1 + 8 * 2, 2 + x % 3
+    rows["gps_time"] = 3e8 + 0.25 * y
+    places = np.stack([rows[axis] * 0.0001 + start for axis, start in zip("XYZ", corner, strict=True)], 1)
+    return las_file(rows, 1, 2, scale=FINE, offset=corner), places
+
+
+CORNERS = (403000.0, 5604000.0, 90.0), (403020.0, 5604000.0, 90.0)
+
+
+@pytest.fixture
+def imported(tmp_path):
+    """imported(corner) -> the object that the import of a tile makes, and its coordinates in the file."""
+
+    def make(corner, **settings):
+        data, places = tile(corner)
+        (tmp_path / "tile").write_bytes(data)
+        bpy.ops.import_scene.surfels_ply(filepath=str(tmp_path / "tile"), isolated="KEEP", **settings)
+        return bpy.context.object, places
+
+    return make
+
+
+def test_two_tiles_meet_and_leave_as_they_came(imported, world_positions, tmp_path):
+    made = [imported(corner) for corner in CORNERS]
+    offset = scene_offset(bpy.context.scene)
+    assert offset.tolist() == [403000, 5604000, 100]
+    for each, places in made:
+        assert np.abs(world_positions(each) + offset - places).max() < 1e-5
+    bpy.ops.export_scene.surfels_ply(filepath=str(tmp_path / "out.ply"))
+    left = read_contents(tmp_path / "out.ply").surfels
+    assert np.abs(left.positions + left.origin - np.concatenate([places for _, places in made])).max() < 1e-5
+    # what was exported comes back to its place, in this scene
+    bpy.ops.import_scene.surfels_ply(filepath=str(tmp_path / "out.ply"))
+    assert np.abs(world_positions(bpy.context.object)[:400] - world_positions(made[0][0])).max() < 1e-5
+
+
+def test_a_file_near_the_origin_stays_there_in_a_scene_with_an_offset(imported, world_positions):
+    imported(CORNERS[0])
+    made, places = imported((3.0, 2.0, 1.0))
+    assert np.abs(world_positions(made) - places).max() < 1e-5
+
+
+def test_a_scan_near_the_origin_gives_the_scene_no_offset(imported, world_positions):
+    made, places = imported((300.0, 2.0, 1.0))
+    assert not scene_offset(bpy.context.scene).any() and np.abs(world_positions(made) - places).max() < 1e-4
+
+
+def values_of(mesh, name, dtype):
+    attribute = mesh.attributes[name]
+    values = np.empty(len(attribute.data), dtype)
+    attribute.data.foreach_get("value", values)
+    return attribute.data_type, values
+
+
+def test_what_the_scanner_measured_arrives_as_attributes(imported):
+    made, places = imported(CORNERS[0])
+    x, y = np.rint(places[:, :2] - CORNERS[0][:2]).astype(int).T
+    expected = {"intensity": 7 * x, "classification": 2 + x % 3, "return_number": 1 + 0 * x}
+    for name, values in (expected | {"number_of_returns": 2 + 0 * x}).items():
+        kind, found = values_of(made.data, name, np.int32)
+        assert kind == "INT" and np.array_equal(found, values), name
+    kind, times = values_of(made.data, "gps_time", np.float32)
+    assert kind == "FLOAT" and np.array_equal(made.data["gps_time_start"] + times.astype(float), 3e8 + 0.25 * y)
+
+
+def test_attributes_follow_the_points_that_became_surfels():
+    mesh = bpy.data.meshes.new("scan")
+    mesh.vertices.add(2)
+    write_scan_attributes(mesh, {"intensity": np.array([0.5, 1.5, np.nan])}, np.array([0, 2]))
+    kind, found = values_of(mesh, "intensity", np.float32)
+    assert kind == "FLOAT" and found[0] == 0.5 and np.isnan(found[1])
