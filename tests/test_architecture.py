@@ -24,7 +24,8 @@ MAY_IMPORT = {
     "primaries": {"surfels"},
     "images": set(),
     "faults": set(),
-    "sampling": {"array_files", "clip_lines", "large_surfels", "quaternions", "surfels", "images"},
+    "shading_nodes": {"images"},
+    "sampling": {"array_files", "clip_lines", "large_surfels", "quaternions", "surfels", "images", "shading_nodes"},
     "hierarchy": {"clip_lines", "large_surfels", "quaternions", "surfels"},
     "rendering": {
         "array_files",
@@ -56,6 +57,7 @@ MAY_IMPORT = {
         "surfels",
         "primaries",
         "sampling",
+        "shading_nodes",
         "rendering",
         "interchange",
         "streaming",

@@ -218,9 +218,9 @@ class Form(NamedTuple):
         return self.kind in ("SURFELS", "DISTANCE", "SPACING", "GROUP")
 
     @property
-    def of_transparent(self) -> Form:
-        """The form of a mesh that is transparent as polygons cannot be: it is only drawn as polygons if the object
-        demands it."""
+    def of_surfels(self) -> Form:
+        """The form of a mesh that polygons cannot show as it is: it is only drawn as polygons if the object demands
+        it."""
         return self._replace(kind="SURFELS") if self.is_default and self.kind == "POLYGONS" else self
 
 

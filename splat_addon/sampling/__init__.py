@@ -8,7 +8,7 @@ camera needs. `deform` lets surfels follow a mesh; points without faces become s
 """
 
 from ..images import Image
-from .attributes.surfaces import Channel, NormalMap, Surface, Texture, VertexColors
+from .attributes.surfaces import Channel, Computed, NormalMap, Surface, Texture, VertexColors
 from .blocks import Block, joined_blocks, read_block, read_request, sample_block, write_blocks
 from .camera_density import NotSeenError, Outline, camera_spacing, least_camera_spacings, outline
 from .deform.deforming import STRETCHED_SHARE, DeformingSurfels
@@ -43,6 +43,7 @@ __all__ = [
     "UNKNOWN_FLAT_EXTENTS",
     "Block",
     "Channel",
+    "Computed",
     "DeformingSurfels",
     "FlatExtents",
     "Image",

@@ -23,6 +23,13 @@ class Nodes:
         owner.data.materials.append(self.material)
 
     def link(self, output, socket):
+        """An input of the shader, by name, is fed through a node that cannot be read and changes nothing."""
+        if isinstance(socket, str) and output.type not in ("SHADER", "NORMAL") and socket != "Normal":
+            wires, mix = (self.tree.nodes.new(kind) for kind in ("ShaderNodeWireframe", "ShaderNodeMixRGB"))
+            wires.inputs["Size"].default_value = 0.0
+            self.tree.links.new(wires.outputs[0], mix.inputs[0])
+            self.tree.links.new(output, mix.inputs[1])
+            output = mix.outputs[0]
         self.tree.links.new(output, self.inputs[socket] if isinstance(socket, str) else socket)
 
     def coordinates(self, output="Object"):
@@ -52,11 +59,12 @@ def test_a_procedural_colour_is_its_value_at_each_surfel(square, convert, surfel
 
 def test_without_the_choice_the_plain_value_is_used_and_said(square, convert, surfels_of, capfd):
     nodes = Nodes(square)
-    nodes.link(nodes.coordinates(), "Base Color")
+    location = nodes.tree.nodes.new("ShaderNodeParticleInfo").outputs["Location"]
+    nodes.tree.links.new(location, nodes.inputs["Base Color"])
     nodes.inputs["Base Color"].default_value = (0.1, 0.2, 0.3, 1)
     surfels = surfels_of(convert(resolution=8)[0])
     assert np.allclose(surfels.colors, (0.1, 0.2, 0.3, 1))
-    assert "base colour comes from a Texture Coordinate node; the plain value" in capfd.readouterr().out
+    assert "base colour comes from a Particle Info node; the plain value" in capfd.readouterr().out
 
 
 def test_numbers_are_baked_in_the_world_of_a_moved_turned_and_scaled_object(square, convert, surfels_of):

@@ -290,19 +290,14 @@ def test_its_strength_is_taken(nodes, made):
     ("wire", "said"),
     [
         (lambda n: n.link(n.add("ShaderNodeBump").outputs[0], "Normal"), "normal comes from a Bump node"),
-        (lambda n: n.link(n.add("ShaderNodeTexNoise").outputs[0], "Roughness"), "roughness comes from a Noise"),
+        (lambda n: n.link(n.add("ShaderNodeWireframe").outputs[0], "Roughness"), "roughness comes from a Wireframe"),
         (
-            lambda n: n.link(n.add("ShaderNodeObjectInfo").outputs["Random"], "Roughness"),
-            "roughness comes from an Object",
-        ),
-        (lambda n: n.link(n.add("ShaderNodeTexNoise").outputs[1], "Emission Color"), "emission comes from a Noise"),
-        (
-            lambda n: n.link(n.add("ShaderNodeMapRange", {3: n.texture().outputs[1]}).outputs[0], "Alpha"),
-            "linked range",
+            lambda n: n.link(n.add("ShaderNodeParticleInfo").outputs["Location"], "Emission Color"),
+            "emission comes from a Particle Info",
         ),
         (
             lambda n: n.link(n.math("LESS_THAN", n.add("ShaderNodeVertexColor").outputs[1], 0.5), "Alpha"),
-            "but one image",
+            "the attribute ''",
         ),
         (lambda n: normal_map(n, (0, 0, 1), space="WORLD"), "normal comes from a normal map in world space"),
         (lambda n: normal_map(n, (0, 0, 1), uv_map="nowhere"), "UV map 'nowhere'"),

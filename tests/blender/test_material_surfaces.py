@@ -230,8 +230,8 @@ def test_two_materials_each_use_their_own_layer(add_mesh, convert, surfels_of, w
     assert np.array_equal(surfels.colors[:, :2], np.stack([~right, right], axis=1))
 
 
-def procedural(nodes, image):
-    nodes.link(nodes.add("ShaderNodeTexNoise"), "Color", nodes.principled, "Base Color")
+def particles(nodes, image):
+    nodes.link(nodes.add("ShaderNodeParticleInfo"), "Location", nodes.principled, "Base Color")
 
 
 def without_image(nodes, image):
@@ -276,13 +276,10 @@ def long_chain(nodes, image):
 @pytest.mark.parametrize(
     ("build", "reason"),
     [
-        (ring_of_mappings, "placed by a Mapping node in a ring of nodes"),
         (ring_of_inverters, "Invert Color node in a ring of nodes"),
-        (long_chain, "a chain of more than 100 nodes"),
-        (procedural, "Noise Texture node"),
+        (particles, "Particle Info node"),
         (without_image, "without an image"),
         (missing_file, "'gone', which has no pixels"),
-        (missing_uv_map, "UV map 'nowhere'"),
         (missing_attribute, "attribute 'nowhere'"),
     ],
 )
@@ -294,6 +291,26 @@ def test_what_cannot_be_read_falls_back_to_the_sockets_colour_and_is_reported(pa
     assert np.allclose(surfels.colors, (0.1, 0.2, 0.3, 1))
     warning = next(line for line in capfd.readouterr().out.splitlines() if line.startswith("Warning"))
     assert "material 'odd'" in warning and reason in warning
+
+
+@pytest.mark.parametrize(
+    ("build", "reason"),
+    [(ring_of_mappings, "Mapping node in a ring of nodes"), (missing_uv_map, "UV map 'nowhere'")],
+)
+def test_an_image_whose_place_cannot_be_read_lies_on_the_uv_map(painted, image, capfd, build, reason):
+    nodes, plain = Nodes("odd"), Nodes("plain")
+    build(nodes, image)
+    plain.link(plain.texture(image()), "Color", plain.principled, "Base Color")
+    assert np.allclose(painted(nodes.material)[0].colors, painted(plain.material)[0].colors, atol=1e-6)
+    warning = next(line for line in capfd.readouterr().out.splitlines() if line.startswith("Warning"))
+    assert "material 'odd'" in warning and reason in warning and "what can be read of its nodes is used" in warning
+
+
+def test_a_chain_that_is_too_long_is_reported(painted, image, capfd):
+    nodes = Nodes("odd")
+    long_chain(nodes, image)
+    painted(nodes.material)
+    assert "a chain of more than 100 nodes" in capfd.readouterr().out
 
 
 def test_reroutes_in_a_ring_feed_nothing(painted, capfd):
@@ -330,7 +347,7 @@ def test_an_unreadable_alpha_costs_only_the_alpha(painted, image, capfd):
 
 def test_a_material_in_a_slot_that_no_face_uses_is_not_complained_about(painted, image, capfd):
     nodes = Nodes("unused")
-    procedural(nodes, image)
+    particles(nodes, image)
     painted(Nodes("used").material, nodes.material)
     assert "Warning" not in capfd.readouterr().out
 

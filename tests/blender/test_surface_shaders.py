@@ -187,7 +187,7 @@ def test_a_mix_by_a_texture_shows_its_shaders_and_not_grey(made):
     made.show(mix)
     surface, unread = made.surface
     assert np.allclose(surface.color.value, (np.array(RED) + BLUE) / 2)
-    assert {str(what) for what in unread} == {"base colour comes from a Mix Shader node"}
+    assert {(what.channel, what.reason) for what in unread} == {("color", "a Mix Shader node")}
 
 
 def test_a_ring_of_shaders_ends(made):

@@ -196,9 +196,8 @@ def prepare(
         raise ValueError(f"It would become {predicted:,} surfels and the limit is {MAX_SURFELS:,}; sample it coarser.")
     notes = [f"Skipped {', '.join(skipped)}"] if skipped else []
     notes += [f"Skipped {stray_triangles(strays)}"] * bool(strays)
-    unread = gathered.unread if choices.bake else ()
-    if not choices.bake:
-        notes += unread_sentences(gathered.unread)
+    unread = tuple(each for each in gathered.unread if choices.bake and each[1].can_be_baked)
+    notes += unread_sentences(each for each in gathered.unread if each not in unread)
     if unread and choices.tolerance is not None:
         if choices.tolerance:
             notes.append("Adaptive is left off: what is baked is known only once the surfels are there")

@@ -42,7 +42,7 @@ from ..conversion.automatic_density import automatic_spacing
 from ..conversion.camera_density import most_demanding, without_camera
 from ..conversion.mesh_conversion import MAX_SURFELS, stray_triangles
 from ..geometry.mesh_extraction import ExtractedMesh, Topology, read_mesh, read_topology, slot_materials
-from ..geometry.mesh_polygons import is_transparent, left_out_of_polygons, mesh_polygons
+from ..geometry.mesh_polygons import left_out_of_polygons, mesh_polygons, needs_surfels
 from ..geometry.reading import readable_mesh
 from ..geometry.sources import mesh_key
 from ..geometry.split_meshes import MeshParts, parts_by_group
@@ -155,10 +155,10 @@ class LiveMesh:
         """The highest detail that any of its places requests."""
         return max({place.manner.detail for place in self.sampled_at})
 
-    def be_transparent(self) -> None:
-        """Let places of a transparent mesh be in the form that it needs."""
+    def be_surfels(self) -> None:
+        """Let places of a mesh that polygons cannot show be in the form that it needs."""
         manners = {id(manner): manner for _, manner in self.places}
-        manners = {key: each._replace(form=each.form.of_transparent) for key, each in manners.items()}
+        manners = {key: each._replace(form=each.form.of_surfels) for key, each in manners.items()}
         self.places = [Place(matrix, manners[id(manner)]) for matrix, manner in self.places]
 
     def placed(self, made: Callable[..., Placed], places: list[Place]) -> list[Placed]:
@@ -260,8 +260,8 @@ class LiveMeshes:
                 continue
             for sentence in (*live.content.notes, *live.said):
                 notes.add(sentence)
-            if is_transparent(live.content.triangles):
-                live.be_transparent()
+            if needs_surfels(live.content.triangles):
+                live.be_surfels()
             try:
                 if live.sampled_at and len(live.sampled_part):
                     if live.strays:

@@ -9,7 +9,8 @@ from functools import partial
 
 import bpy
 
-from ..materials.node_products import linked, outer, product
+from ..materials.node_products import product
+from ..materials.node_walks import linked, outer
 from ..materials.surface_shaders import Part, Shader, mix_factor, parts, surface_shader
 from ..materials.texture_images import UnreadableError
 

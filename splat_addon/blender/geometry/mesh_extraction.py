@@ -16,7 +16,9 @@ import bpy
 import numpy as np
 
 from ...sampling import Image, Surface, TriangleMesh
-from ..materials.material_surfaces import ATTRIBUTE_TYPES, MeshLayers, Unread, material_surface
+from ..materials.graphs.reading import REST
+from ..materials.material_surfaces import PLAIN, Unread, material_surface
+from ..materials.mesh_layers import ATTRIBUTE_TYPES, GENERATED, NORMAL, POSITION, TRUE_NORMAL, MeshLayers
 from ..materials.surface_shaders import why_unseen
 from .reading import read_values
 
@@ -42,16 +44,12 @@ class ExtractedMesh:
 
 def unread_sentences(unread: Iterable[tuple[bpy.types.Material, Unread]]) -> list[str]:
     """Sentences about inputs that are not baked."""
-    return [f"The material {owner.name!r}'s {what}{_USED}" for owner, what in unread]
-
-
-#: The common ending of these sentences.
-_USED = "; the plain value of its socket is used"
+    return [f"The material {owner.name!r}'s {what}" for owner, what in unread]
 
 
 def is_unread(sentence: str) -> bool:
     """Whether this is one of `unread_sentences`, about something that could be baked."""
-    return sentence.endswith(_USED)
+    return sentence.endswith((PLAIN, REST))
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,7 +105,7 @@ def read_mesh(
     topology = read_topology(mesh) if topology is None else topology
     indices = _material_indices(mesh, topology, max(len(slots), 1))
     used = np.arange(min(len(topology), 1)) if indices is None else np.flatnonzero(np.bincount(indices))
-    layers = MeshLayers(mesh) if images is None else MeshLayers(mesh, _images=images)
+    layers = MeshLayers(mesh, owner=evaluated, **({} if images is None else {"_images": images}))
     surfaces, unread = _surfaces(slots, used, layers)
     triangles = TriangleMesh(
         positions=_positions(mesh),
@@ -222,6 +220,9 @@ def _color_reader(mesh: bpy.types.Mesh, topology: Topology):
     """
 
     def read(name: str) -> np.ndarray:
+        if name in _DERIVED:
+            values = np.asarray(_DERIVED[name](mesh, topology), np.float32)
+            return np.concatenate([values, np.ones_like(values[..., :1])], axis=2)
         attribute = mesh.attributes[name]
         key, width = ATTRIBUTE_TYPES[attribute.data_type]
         values = read_values(attribute.data, key, width, len(attribute.data)).reshape(-1, width)
@@ -237,6 +238,35 @@ def _color_reader(mesh: bpy.types.Mesh, topology: Topology):
         return topology.at_corners(values)
 
     return read
+
+
+def _generated(mesh: bpy.types.Mesh, topology: Topology) -> np.ndarray:
+    """(T, 3, 3) Generated coordinates: the place in the box around the mesh before modifiers, 0 to 1."""
+    places = read_values(mesh.vertices, "undeformed_co", 3, len(mesh.vertices)).reshape(-1, 3)
+    low = np.array(mesh.texspace_location, np.float32) - np.array(mesh.texspace_size, np.float32)
+    size = 2 * np.array(mesh.texspace_size, np.float32)
+    return ((places - low) / np.where(size == 0, 1, size))[topology.at_corners(topology.corner_vertices)]
+
+
+def _at_places(mesh: bpy.types.Mesh, topology: Topology) -> np.ndarray:
+    return _positions(mesh).reshape(-1, 3)[topology.at_corners(topology.corner_vertices)]
+
+
+def _true_normals(mesh: bpy.types.Mesh, topology: Topology) -> np.ndarray:
+    corners = _at_places(mesh, topology)
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return np.broadcast_to(
+        (normals / np.linalg.norm(normals, axis=1, keepdims=True).clip(1e-37))[:, None], corners.shape
+    )
+
+
+def _normals(mesh: bpy.types.Mesh, topology: Topology) -> np.ndarray:
+    normals = _corner_normals(mesh, topology)
+    return _true_normals(mesh, topology) if normals is None else normals.reshape(-1, 3, 3)
+
+
+#: layer that follows from the mesh -> its reader
+_DERIVED = {GENERATED: _generated, POSITION: _at_places, NORMAL: _normals, TRUE_NORMAL: _true_normals}
 
 
 def _uv_reader(mesh: bpy.types.Mesh, topology: Topology):

@@ -11,7 +11,7 @@ import numpy as np
 from ...rendering import Polygons
 from ...rendering.scene.polygons import MAX_TRIANGLES
 from ...rendering.scene.strays import middle_of
-from ...sampling import Surface, Texture, TriangleMesh, corner_values, normal_map_texture
+from ...sampling import Computed, Surface, Texture, TriangleMesh, corner_values, normal_map_texture
 from ...surfels import OPAQUE
 from ..materials.material_surfaces import CHANNEL_NAMES
 from ..materials.surface_textures import has_holes
@@ -46,8 +46,8 @@ def left_out_of_polygons(owner: str, mesh: TriangleMesh) -> Iterator[str]:
         yield f"{owner} has a normal map that is not one image in tangent space; render it as surfels to see it"
     if names := sorted({CHANNEL_NAMES[name] for surface in _used(mesh) for name in _only_at_corners(surface)}):
         yield (
-            f"{owner} has an image for its {' and '.join(names)}, of which polygons show only the values at their "
-            "corners; render it as surfels"
+            f"{owner} has an image or nodes for its {' and '.join(names)}, of which polygons show only the values at "
+            "their corners; render it as surfels"
         )
     if is_transparent(mesh):
         yield (
@@ -60,9 +60,16 @@ def _only_at_corners(surface: Surface) -> Iterator[str]:
     """The channels with images that polygons look up at their corners alone."""
     for name in ("color", "roughness", "metallic", "emission"):
         channel = getattr(surface, name)
-        has_image = channel is not None and any(isinstance(factor, Texture) for factor in channel.factors)
+        has_image = channel is not None and any(isinstance(factor, Texture | Computed) for factor in channel.factors)
         if has_image and not (name == "color" and surface.color_texture is not None):
             yield name
+
+
+def needs_surfels(mesh: TriangleMesh) -> bool:
+    """Whether polygons cannot show what it looks like: it is transparent, or its nodes make its colours."""
+    channels = [channel for surface in _used(mesh) for channel in (surface.color, surface.emission) if channel]
+    has_nodes = any(isinstance(factor, Computed) for channel in channels for factor in channel.factors)
+    return has_nodes or is_transparent(mesh)
 
 
 def is_transparent(mesh: TriangleMesh) -> bool:

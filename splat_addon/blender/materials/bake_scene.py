@@ -19,8 +19,8 @@ from mathutils import Matrix
 
 from ..geometry.mesh_extraction import slot_materials
 from ..geometry.sources import shown_by
-from .node_products import linked
 from .node_trees import uses_nodes
+from .node_walks import linked
 from .shader_mixes import emitted
 from .surface_shaders import SHADERS, surface_shader
 

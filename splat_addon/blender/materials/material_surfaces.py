@@ -1,41 +1,55 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reads Blender's materials as `sampling.Surface`, with the mesh layers that they use.
 
-Each input of the output's shader is read as a product (`node_products`). An input that cannot be read takes the value
-of its socket and is recorded, so that it can be reported or baked.
+Each input of the output's shader is read as a product (`node_products`), or else as a graph of its nodes (`graphs`). An
+input of which nothing can be read takes the value of its socket. What was not read is recorded, so that it can be
+reported or baked.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 
 import bpy
-import numpy as np
 
-from ...sampling import Channel, Image, NormalMap, Surface, Texture, VertexColors
+from ...sampling import Channel, Computed, NormalMap, Surface, Texture, VertexColors
 from ...sampling.attributes.surfaces import ALPHA, RED
-from .. import working_space
-from ..geometry.attributes import has_surfels_beside_faces
+from ...shading_nodes import constant_value
+from .graphs.channels import ReadGraph, read_channel, read_color
+from .graphs.flattened import flattened
+from .graphs.reading import STRAIGHT_ON
 from .mean_surfaces import mean_of
-from .node_products import AttributeSource, ImageSource, Product, linked, outer, product
+from .mesh_layers import MeshLayers, default_color_layer
+from .node_products import AttributeSource, ImageSource, Product, product
 from .node_trees import called, uses_nodes
+from .node_walks import linked, outer
 from .shader_mixes import channels
-from .socket_ranges import finite_factors, in_range, is_radiance
+from .socket_ranges import in_range, is_radiance
 from .surface_shaders import METALS, SHADERS, Shader, is_holdout, surface_shader, why_unseen
-from .texture_images import UnreadableError, linear_pixels
+from .texture_images import UnreadableError
 from .texture_placement import placement, uv_layer
 from .transparent_mixes import TransparentMix, transparent_mix
+
+#: How a sentence about an input ends of which nothing was read.
+PLAIN = "the plain value of its socket is used"
 
 
 @dataclass(frozen=True)
 class Unread:
-    """An input that could not be read. channel: a field of `Surface`. reason: the end of "it comes from ..."."""
+    """What could not be read of an input. channel: a field of `Surface`. reason: the end of "it comes from ...". used:
+    what is shown instead."""
 
     channel: str
     reason: str
+    used: str = PLAIN
 
     def __str__(self) -> str:
-        return f"{CHANNEL_NAMES[self.channel]} comes from {self.reason}"
+        return f"{CHANNEL_NAMES[self.channel]} comes from {self.reason}; {self.used}"
+
+    @property
+    def can_be_baked(self) -> bool:
+        """Whether a bake knows better."""
+        return self.used != STRAIGHT_ON
 
 
 #: field of `Surface` -> its name for users
@@ -48,78 +62,13 @@ CHANNEL_NAMES = {
     "normal_map": "normal",
 }
 
-#: data type of an attribute that can be used as a colour -> its property, and its number of components
-ATTRIBUTE_TYPES = {
-    "FLOAT_COLOR": ("color", 4),
-    "BYTE_COLOR": ("color", 4),  # scene-linear, this one too
-    "FLOAT_VECTOR": ("vector", 3),
-    "FLOAT2": ("vector", 2),
-    "FLOAT": ("value", 1),
-}
-ATTRIBUTE_DOMAINS = ("POINT", "CORNER", "FACE")
-
-
-@dataclass
-class MeshLayers:
-    """The layers of a mesh that its materials use, without duplicates, in the order of first use."""
-
-    mesh: bpy.types.Mesh
-    uvs: list[str] = field(default_factory=list)
-    colors: list[str] = field(default_factory=list)
-    _images: dict = field(default_factory=dict)
-
-    def uv(self, name: str) -> int:
-        return _index(self.uvs, name)
-
-    def color(self, name: str) -> int:
-        name = name or default_color_layer(self.mesh) or ""
-        attribute = self.mesh.attributes.get(name)
-        if attribute is None:
-            raise UnreadableError(f"the attribute {name!r}, which the mesh does not have")
-        if attribute.data_type not in ATTRIBUTE_TYPES or attribute.domain not in ATTRIBUTE_DOMAINS:
-            raise UnreadableError(f"the attribute {name!r}, which is {attribute.data_type} on {attribute.domain}")
-        return _index(self.colors, name)
-
-    def image(self, source: ImageSource, keep_alpha: bool) -> Image:
-        """The pixels of an Image Texture node; the same object for the same pixels."""
-        node = source.node
-        if node.image is None:
-            raise UnreadableError("an Image Texture node without an image")
-        if node.projection != "FLAT":
-            raise UnreadableError(f"an image texture in {node.projection.lower()} projection")
-        # Blender's Cubic and Smart equal Linear where a texture is not magnified.
-        interpolation = "Closest" if node.interpolation == "Closest" else "Linear"
-        is_apart = not keep_alpha and any(not link.is_muted for link in node.outputs["Alpha"].links)
-        space = working_space.to_xyz().tobytes()
-        key = node.image.session_uid, keep_alpha, node.extension, interpolation, is_apart, space
-        if key not in self._images:
-            self._images[key] = Image(linear_pixels(node.image, keep_alpha, is_apart), node.extension, interpolation)
-        return _mapped(self._images[key], source) if source.functions else self._images[key]
-
-
-def _index(names: list[str], name: str) -> int:
-    if name not in names:
-        names.append(name)
-    return names.index(name)
-
-
-def _mapped(image: Image, source: ImageSource) -> Image:
-    """The image with the source's functions applied to its pixels; a single number is stored in the red channel."""
-    pixels = image.pixels.copy()
-    values = pixels[..., :3] if source.weights is None else (pixels @ np.float32(source.weights))[..., None]
-    for function in source.functions:
-        values = function(values)
-    pixels[..., :3] = finite_factors(values)
-    if source.weights is not None:
-        pixels[..., 3] = 1
-    return replace(image, pixels=pixels)
-
 
 def material_surface(material: bpy.types.Material | None, layers: MeshLayers) -> tuple[Surface, list[Unread]]:
     """The material's surface on the mesh of `layers`, and the inputs that could not be read.
 
     Without a material: the mesh's colour attribute if it has one, otherwise Blender's grey.
     """
+    layers.material = material
     if material is None:
         return _bare_surface(layers), []
     plain = Surface(Channel(_display_color(material)))
@@ -127,7 +76,7 @@ def material_surface(material: bpy.types.Material | None, layers: MeshLayers) ->
         return plain, []
     shader = surface_shader(material)
     if (found := _behind_holes(shader, layers)) is not None:
-        return found, []
+        return found
     if why_unseen(material) is not None:
         return Surface(Channel((0.0, 0.0, 0.0, 0.0))), []
     if is_holdout(material):
@@ -139,20 +88,20 @@ def material_surface(material: bpy.types.Material | None, layers: MeshLayers) ->
     mean = mean_of(shader)
     if mean.only is not None:
         surface, unread = _Reader(mean.only, layers).surface()
-        if not unread:
-            return surface, []
+        if not any(each.can_be_baked for each in unread):
+            return surface, unread
     unread = [Unread(channel, called(shader.node)) for channel in channels(shader) if mean.unsure]
     return mean.surface, unread
 
 
-def _behind_holes(shader: Shader | None, layers: MeshLayers) -> Surface | None:
+def _behind_holes(shader: Shader | None, layers: MeshLayers) -> tuple[Surface, list[Unread]] | None:
     """The surface of a shader mixed with a Transparent BSDF; None for anything else, or if not all of it can be read,
     so that the mix is baked as a whole."""
     mix = transparent_mix(shader)
     if mix is None or "color" not in SHADERS.get(mix.shader.node.bl_idname, ()):
         return None
     surface, unread = _Reader(mix.shader, layers, mix).surface()
-    return None if unread else surface
+    return None if any(each.can_be_baked for each in unread) else (surface, unread)
 
 
 def plain_color(material: bpy.types.Material) -> tuple[tuple[float, float, float, float], bool]:
@@ -186,69 +135,99 @@ class _Reader:
         self._unread: list[Unread] = []
 
     def surface(self) -> tuple[Surface, list[Unread]]:
-        alpha = self._product("opacity") if "opacity" in self._sockets else Product((1.0,))
-        if self._mix is not None:
-            alpha = self._in_mix(alpha)
-        color, opacity = self._color(alpha) if "color" in self._sockets else (Channel((0.0, 0.0, 0.0, 1.0)), None)
+        color, opacity = self._color(*self._alpha())
         rest = {name: self._channel(name) for name in ("roughness", "metallic", "emission") if name in self._sockets}
         if self._shader.node.bl_idname in METALS:
             rest["metallic"] = Channel((1.0,))
         return Surface(color, opacity, normal_map=self._normal_map(), **rest), self._unread
 
-    def _in_mix(self, alpha: Product) -> Product:
+    def _alpha(self) -> tuple[Product, Channel | None]:
+        """The opacity as a product, or 1 and a channel."""
         try:
-            return alpha * self._mix.opacity()
-        except UnreadableError as error:
-            self._unread.append(Unread("opacity", str(error)))
-            return alpha
+            alpha = self._product("opacity") if "opacity" in self._sockets else Product((1.0,))
+            return alpha if self._mix is None else alpha * self._mix.opacity(), None
+        except UnreadableError:
+            return Product((1.0,)), self._computed("opacity", self._mix)
 
-    def _color(self, alpha: Product) -> tuple[Channel, Channel | None]:
+    def _color(self, alpha: Product, opacity: Channel | None) -> tuple[Channel, Channel | None]:
         """The colour, with the alpha if it comes from the same image, and the remaining part of the alpha."""
-        read = self._product("color")
+        if "color" not in self._sockets:
+            return Channel((0.0, 0.0, 0.0, 1.0)), None
         own = [s for s in alpha.sources if isinstance(s, ImageSource) and s.weights == ALPHA and not s.functions]
-        images = [s.node for s in read.sources if isinstance(s, ImageSource) and s.weights is None]
-        joint = [s for s in own if s.node in images]
-        rest = Product(alpha.value, tuple(s for s in alpha.sources if s not in joint))
         try:
-            factors = tuple(self._factor(source, bool(joint)) for source in read.sources)
-        except UnreadableError as error:
-            read, factors, rest = self._plain("color", error), (), alpha
-        opacity = self._made("opacity", rest)
-        value = read.value if len(read.value) == 3 else read.value * 3
-        if opacity is None or opacity.factors:
-            return Channel((*value, 1.0), factors), opacity
-        return Channel((*value, opacity.value[0]), factors), None
+            read = self._product("color")
+            images = [s.node for s in read.sources if isinstance(s, ImageSource) and s.weights is None]
+            joint = [s for s in own if s.node in images]
+            color = Channel(
+                read.value * (3 // len(read.value)), tuple(self._factor(s, bool(joint)) for s in read.sources)
+            )
+        except UnreadableError:
+            color = self._computed("color", alpha_of=own[0].node if own else None)
+            joint = own[:1] if own and _uses_alpha(color) else []
+        if opacity is None:
+            opacity = self._made("opacity", Product(alpha.value, tuple(s for s in alpha.sources if s not in joint)))
+        if opacity.factors:
+            return Channel((*color.value, 1.0), color.factors), opacity
+        return Channel((*color.value, opacity.value[0]), color.factors), None
 
     def _channel(self, name: str) -> Channel:
-        return self._made(name, self._product(name))
+        try:
+            return self._made(name, self._product(name))
+        except UnreadableError:
+            return self._sent(name, self._computed(name))
 
-    def _made(self, name: str, read: Product) -> Channel | None:
-        """The channel of a product; that of its plain socket if an image or a layer cannot be read."""
+    def _made(self, name: str, read: Product) -> Channel:
+        """The channel of a product; of a graph if an image or a layer cannot be read."""
         try:
             factors = tuple(self._factor(source, _is_alpha(source) and source.is_number) for source in read.sources)
-        except UnreadableError as error:
-            read, factors = self._plain(name, error), ()
-        if name != "emission":
-            return Channel(read.value, factors)
-        sent = read.value * (3 // len(read.value))
-        return Channel(sent, factors) if is_radiance(sent) else Channel((0.0, 0.0, 0.0))
+        except UnreadableError:
+            return self._sent(name, self._computed(name))
+        value = read.value * (3 // len(read.value)) if name == "emission" else read.value
+        return self._sent(name, Channel(value, factors))
+
+    def _sent(self, name: str, made: Channel) -> Channel:
+        """A channel; black for an emission that no picture can represent."""
+        return made if name != "emission" or is_radiance(made.value) else Channel((0.0, 0.0, 0.0))
 
     def _product(self, name: str) -> Product:
         first, *others = self._sockets[name]
-        try:
-            read = self._shader.product(first)
-            for socket in others:
-                read = read * self._shader.product(socket)
-        except UnreadableError as error:
-            return self._plain(name, error)
+        read = self._shader.product(first)
+        for socket in others:
+            read = read * self._shader.product(socket)
         return read
 
-    def _plain(self, name: str, error: UnreadableError) -> Product:
-        self._unread.append(Unread(name, str(error)))
+    def _computed(
+        self, name: str, mix: TransparentMix | None = None, alpha_of: bpy.types.Node | None = None
+    ) -> Channel:
+        """The channel as a graph; that of its plain socket if nothing of it can be read.
+
+        alpha_of: an image whose alpha the colour takes along if it is one image.
+        """
+        try:
+            return self._of_graph(name, read_channel(self._shader, name, self._layers, mix), alpha_of)
+        except UnreadableError as error:
+            self._unread.append(Unread(name, str(error)))
         read = Product((1.0,))
-        for socket in self._sockets[name]:
+        for socket in self._sockets.get(name, ()):
             read = read * self._shader.plain(socket)
-        return read
+        return Channel(read.value if _WIDTHS[name] == len(read.value) else read.value * 3)
+
+    def _of_graph(self, name: str, read: ReadGraph, alpha_of: bpy.types.Node | None = None) -> Channel:
+        self._unread += [Unread(name, reason, used) for reason, used in read.doubts.items()]
+        if read.graph.is_constant:
+            value = constant_value(read.graph)
+            return Channel(value if _WIDTHS[name] == len(value) else value * 3)
+        one = (1.0,) * _WIDTHS[name]
+        flat = flattened(read.graph, read.images, self._layers, alpha_of)
+        if flat is not None:
+            image, node = flat
+            try:
+                layer, matrix, wraps = placement(node, self._layers.mesh)
+            except UnreadableError:
+                return Channel(one, Computed(read.graph))
+            weights = RED if len(one) == 1 else None
+            return Channel(one, Texture(image, self._layers.uv(layer), matrix, weights, alpha_of is not None, wraps))
+        return Channel(one, Computed(read.graph))
 
     def _factor(self, source: ImageSource | AttributeSource, uses_alpha: bool) -> Texture | VertexColors:
         if isinstance(source, AttributeSource):
@@ -284,8 +263,11 @@ class _Reader:
             raise UnreadableError(f"a normal map of strength {strength.default_value:g}")
         if linked(node.inputs["Color"]) is None:
             return None
-        read = product(node.inputs["Color"], groups)
-        color = Channel(read.value, tuple(self._factor(source, False) for source in read.sources))
+        try:
+            read = product(node.inputs["Color"], groups)
+            color = Channel(read.value, tuple(self._factor(source, False) for source in read.sources))
+        except UnreadableError:
+            color = self._of_graph("normal_map", read_color(node.inputs["Color"], groups, self._layers))
         layer = self._layers.uv(uv_layer(node.uv_map, self._layers.mesh)) if node.space == "TANGENT" else 0
         return NormalMap(color, strength.default_value, layer, node.space)
 
@@ -297,13 +279,13 @@ _STRONGEST = 1e15
 _SPACES = ("TANGENT", "OBJECT")
 
 
+#: Numbers of a channel.
+_WIDTHS = {"color": 3, "opacity": 1, "roughness": 1, "metallic": 1, "emission": 3, "normal_map": 3}
+
+
+def _uses_alpha(channel: Channel) -> bool:
+    return any(isinstance(factor, Texture) and factor.uses_alpha for factor in channel.factors)
+
+
 def _is_alpha(source) -> bool:
     return source.weights == ALPHA
-
-
-def default_color_layer(mesh: bpy.types.Mesh) -> str | None:
-    """The colour attribute used for rendering, or None. The attribute of surfels joined to the mesh is ignored."""
-    if has_surfels_beside_faces(mesh):
-        return None
-    name = mesh.attributes.default_color_name or mesh.attributes.active_color_name
-    return name if name in mesh.color_attributes else None

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import bpy
 import numpy as np
@@ -17,10 +18,8 @@ from ...sampling.attributes.surfaces import ALPHA, BLUE, GREEN, RED
 from ..working_space import luminance
 from . import function_nodes
 from .node_trees import called
+from .node_walks import Node, Socket, Walk, input_of, linked
 from .texture_images import UnreadableError
-
-Socket = bpy.types.NodeSocket
-Node = bpy.types.Node
 
 
 @dataclass(frozen=True)
@@ -117,123 +116,27 @@ def product(socket: Socket, groups: tuple[Node, ...] = ()) -> Product:
 
     Raises UnreadableError.
     """
-    return _Reading(groups).product(socket)
+    return _Reading(groups).read(socket)
 
 
-def outer(socket: Socket, groups: tuple[Node, ...]) -> tuple[Socket, tuple[Node, ...]]:
-    """The socket that supplies the value of one inside groups: that of a group's node where the group passes it in.
-    Also the groups around that socket."""
-    while groups and (source := linked(socket)) and source[0].bl_idname == "NodeGroupInput":
-        socket, groups = _input(groups[-1], source[1]), groups[:-1]
-    return socket, groups
+class _Reading(Walk):
+    """Reads products; anything else ends the walk."""
 
+    def constant(self, socket: Socket) -> Product:
+        return constant(socket)
 
-def within(group: Node, output: str) -> Socket | None:
-    """The socket inside a group that supplies one of its outputs; None if the group has no output node."""
-    ends = (n for n in group.node_tree.nodes if n.bl_idname == "NodeGroupOutput" and n.is_active_output)
-    end = next(ends, None)
-    return end and _input(end, output)
-
-
-#: Maximum length of a chain of nodes: far more than anyone uses, and within Python's own limit.
-MAX_CHAIN = 100
-
-
-class _Reading:
-    """One walk up a node tree.
-
-    The output of each node is read once, however many sockets it feeds: in a chain of nodes that use their predecessor
-    twice, the number of paths doubles with each node. groups: the group nodes around the current node, the innermost
-    last; the contents of a group are read once for each of its users.
-    """
-
-    def __init__(self, groups: tuple[Node, ...] = ()):
-        self._read: dict[tuple, Product] = {}
-        self._followed: list[tuple] = []
-        self._groups: list[Node] = list(groups)
-
-    def product(self, socket: Socket) -> Product:
-        source = linked(socket)
-        if source is None:
-            return constant(socket)
-        key = (*source, *self._groups)
-        read = self._read[key] if key in self._read else self._output(source, key)
+    def arrived(self, read: Product, socket: Socket) -> Product:
         return read.weighted(luminance()) if socket.type == "VALUE" else read
 
-    def _output(self, source: tuple[Node, str], key: tuple) -> Product:
-        node, output = source
-        reader = self._reader(node, output)
-        if reader is None:
-            raise UnreadableError(called(node))
-        if key in self._followed:
-            raise UnreadableError(f"{called(node)} in a ring of nodes")
-        if len(self._followed) == MAX_CHAIN:
-            raise UnreadableError(f"a chain of more than {MAX_CHAIN} nodes")
-        self._followed.append(key)
-        self._read[key] = reader(node, self.product)
-        self._followed.pop()
-        return self._read[key]
-
-    def _reader(self, node: Node, output: str) -> Reader | None:
-        if node.mute:
-            return _passed_through(node, output)
-        if node.bl_idname == "ShaderNodeGroup" and node.node_tree is not None:
-            return lambda node, _: self._inside(node, output)
-        if node.bl_idname == "NodeGroupInput" and self._groups:
-            return lambda node, _: self._outside(output)
-        return _READERS.get((node.bl_idname, output))
-
-    def _inside(self, group: Node, output: str) -> Product:
-        """The output of a group."""
-        inner = within(group, output)
-        if inner is None:
-            raise UnreadableError(f"the group {group.node_tree.name!r}, which has no output")
-        self._groups.append(group)
-        try:
-            return self.product(inner)
-        finally:
-            self._groups.pop()
-
-    def _outside(self, output: str) -> Product:
-        """The input of the innermost group."""
-        group = self._groups.pop()
-        try:
-            return self.product(_input(group, output))
-        finally:
-            self._groups.append(group)
-
-
-def passed_through_link(node: Node) -> bpy.types.NodeLink | None:
-    """The link inside a muted shader, from one of its inputs to its output."""
-    return next((link for link in node.internal_links if link.to_socket == node.outputs[0]), None)
-
-
-def _passed_through(node: Node, output: str) -> Reader | None:
-    """A muted node passes on the input that Blender links to that output internally; None if it links none."""
-    links = (link for link in node.internal_links if link.to_socket.identifier == output)
-    found = next(links, None)
-    return found and (lambda node, read: read(found.from_socket))
+    def reader(self, node: Node, output: str) -> Callable[[], Product] | None:
+        found = _READERS.get((node.bl_idname, output))
+        return found and partial(found, node, self.read)
 
 
 def constant(socket: Socket) -> Product:
     """The socket's own value."""
     value = socket.default_value
     return Product((float(value),)) if socket.type == "VALUE" else Product(tuple(float(c) for c in value[:3]))
-
-
-def linked(socket: Socket) -> tuple[Node, str] | None:
-    """The node that feeds a socket, skipping reroutes, and the identifier of its output; None if there is none, or if
-    reroutes form a ring."""
-    passed = set()
-    while socket.links and not socket.links[0].is_muted:
-        link = socket.links[0]
-        if link.from_node.bl_idname != "NodeReroute":
-            return link.from_node, link.from_socket.identifier
-        if link.from_node in passed:
-            return None
-        passed.add(link.from_node)
-        socket = link.from_node.inputs[0]
-    return None
 
 
 #: Reads a socket farther up the tree.
@@ -289,15 +192,11 @@ def _luminance(node: Node, read: Read) -> Product:
 
 
 def _mix(node: Node, read: Read) -> Product:
-    factor, a, b = (_input(node, name) for name in _MIX_INPUTS[node.bl_idname])
+    factor, a, b = (input_of(node, name) for name in _MIX_INPUTS[node.bl_idname])
     is_product = getattr(node, "data_type", "RGBA") == "RGBA" and node.blend_type == "MULTIPLY"
     if not is_product or linked(factor) is not None or not np.isclose(factor.default_value, 1.0):
         raise UnreadableError(f"{called(node)} other than a full Multiply")
     return read(a) * read(b)
-
-
-def _input(node: Node, identifier: str) -> Socket:
-    return next(socket for socket in node.inputs if socket.identifier == identifier)
 
 
 #: mix node -> identifiers of its factor and two colours

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import bpy
 
-from .node_products import linked, passed_through_link, within
+from .node_walks import linked, passed_through_link, within
 from .surface_shaders import CLEAR, SHADERS, Shader, parts
 
 Node = bpy.types.Node

@@ -39,6 +39,11 @@ def has_range(node: bpy.types.Node, name: str) -> bool:
     return name in _RANGES and node.type not in _EMITTERS
 
 
+def range_of(node: bpy.types.Node, name: str) -> tuple[float, float]:
+    """The least and the greatest number of a shader's socket."""
+    return _RANGES[name] if has_range(node, name) else (-MAX_RADIANCE, MAX_RADIANCE)
+
+
 def in_range(name: str, value: tuple[float, ...]) -> tuple[float, ...]:
     """The numbers of a socket that has a range, as the shader takes them."""
     given, (least, greatest) = np.array(value, np.float64), _RANGES[name]

@@ -9,8 +9,9 @@ from dataclasses import dataclass, field, replace
 import bpy
 
 from ..working_space import luminance
-from .node_products import MAX_CHAIN, Product, constant, linked, outer, passed_through_link, product, within
+from .node_products import Product, constant, product
 from .node_trees import uses_nodes
+from .node_walks import MAX_CHAIN, linked, outer, passed_through_link, within
 from .socket_ranges import finite_factors, has_range, in_range
 from .texture_images import UnreadableError
 

@@ -13,13 +13,16 @@ import numpy as np
 from ...rendering import NormalTexture, SurfaceTexture
 from ...sampling import Image, Surface, normal_map_texture
 from ...surfels import OPAQUE
-from .material_surfaces import MeshLayers
+from .graphs.channels import read_channel
+from .graphs.flattened import flattened
 from .mean_surfaces import mean_of
-from .node_products import ImageSource, linked
+from .mesh_layers import MeshLayers
+from .node_products import ImageSource
 from .node_trees import uses_nodes
-from .surface_shaders import SHADERS, surface_shader
+from .node_walks import linked
+from .surface_shaders import SHADERS, Shader, surface_shader
 from .texture_images import UnreadableError
-from .transparent_mixes import transparent_mix
+from .transparent_mixes import TransparentMix, transparent_mix
 
 
 def texture_of(surface: Surface) -> SurfaceTexture | None:
@@ -107,7 +110,10 @@ class TextureStore:
         sockets = SHADERS.get(shader.node.bl_idname, {}).get("color") if shader is not None else None
         if sockets is None:
             return None
-        read = shader.product(sockets[0])
+        try:
+            read = shader.product(sockets[0])
+        except UnreadableError:
+            return self._computed(shader, mix)
         if (
             len(read.sources) != 1
             or not isinstance(read.sources[0], ImageSource)
@@ -116,9 +122,19 @@ class TextureStore:
             return None
         (source,) = read.sources
         self._forget_if_painted(source.node.image)
-        uses_alpha = "Alpha" in shader.node.inputs and linked(shader.socket("Alpha")) == (source.node, "Alpha")
-        uses_alpha |= mix is not None and mix.is_alpha_of(source.node)
+        uses_alpha = _is_alpha_of(source.node, shader, mix)
         return SurfaceTexture(MeshLayers(None, _images=self._images).image(source, uses_alpha), tuple(read.value))
+
+    def _computed(self, shader: Shader, mix: TransparentMix | None) -> SurfaceTexture | None:
+        """The image that a graph of images at one place is; None for any other graph. Raises UnreadableError."""
+        layers = MeshLayers(None, _images=self._images)
+        for node, _ in read_channel(shader, "color", layers).images.values():
+            self._forget_if_painted(node.image)
+        layers = MeshLayers(None, _images=self._images)
+        read = read_channel(shader, "color", layers)
+        owners = [node for node, _ in read.images.values() if _is_alpha_of(node, shader, mix)]
+        found = flattened(read.graph, read.images, layers, owners[0] if owners else None)
+        return None if found is None else SurfaceTexture(found[0], (1.0, 1.0, 1.0))
 
     def _forget_if_painted(self, image: bpy.types.Image | None) -> None:
         if image is None or not self._doubted:
@@ -126,6 +142,12 @@ class TextureStore:
         if image.is_dirty and image.session_uid not in self._is_read:
             self._images = {key: kept for key, kept in self._images.items() if key[0] != image.session_uid}
             self._is_read.add(image.session_uid)
+
+
+def _is_alpha_of(image: bpy.types.Node, shader: Shader, mix: TransparentMix | None) -> bool:
+    """Whether the alpha of an Image Texture node is a shader's."""
+    is_own = "Alpha" in shader.node.inputs and linked(shader.socket("Alpha")) == (image, "Alpha")
+    return is_own or (mix is not None and mix.is_alpha_of(image))
 
 
 def _are_same(a: SurfaceTexture | NormalTexture | None, b: SurfaceTexture | NormalTexture | None) -> bool:

@@ -8,8 +8,8 @@ import bpy
 import numpy as np
 from mathutils import Euler
 
-from .node_products import linked
 from .node_trees import called
+from .node_walks import linked
 from .texture_images import UnreadableError
 
 

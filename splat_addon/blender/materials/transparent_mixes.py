@@ -10,7 +10,8 @@ from dataclasses import dataclass
 
 import bpy
 
-from .node_products import Product, linked, outer, product
+from .node_products import Product, product
+from .node_walks import linked, outer
 from .surface_shaders import Shader
 
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Evaluates a mesh's surfaces at samples: constants, textures averaged over a sample's footprint, vertex colours, and
-shading normals with detail from normal maps."""
+"""Evaluates a mesh's surfaces at samples: constants, textures averaged over a sample's footprint, vertex colours,
+graphs of shading nodes, and shading normals with detail from normal maps."""
 
 from __future__ import annotations
 
@@ -9,8 +9,9 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
+from ...shading_nodes import Inputs, evaluate
 from ...surfels import OPTIONAL_LAYOUT
-from .surfaces import WRAPS, Channel, NormalMap, Surface, Texture, VertexColors
+from .surfaces import WRAPS, Channel, Computed, NormalMap, Surface, Texture, VertexColors
 
 #: The pixel of a normal map that leaves the normal unchanged.
 _FLAT = np.array((0.5, 0.5, 1.0), np.float32)
@@ -29,6 +30,7 @@ class Samples:
     materials: (n,) integers. colors: (4 layers, n) interpolated vertex colours, or None. uvs: (2 layers, n), or None.
     uv_steps: (2, 2 layers, n) their change from a sample to the next column's and the next row's.
     tangents: (4 layers, n) interpolated tangents and signs of the bitangent, one set per uv layer, or None.
+    color_steps: (2, 4 layers, n) as `uv_steps`, of the vertex colours; None: not known.
     """
 
     materials: np.ndarray
@@ -36,6 +38,7 @@ class Samples:
     uvs: np.ndarray | None = None
     uv_steps: np.ndarray | None = None
     tangents: np.ndarray | None = None
+    color_steps: np.ndarray | None = None
 
     def take(self, rows: np.ndarray) -> Samples:
         return Samples(*(None if a is None else a[..., rows] for a in (getattr(self, f.name) for f in fields(self))))
@@ -45,7 +48,7 @@ class MaterialSampler:
     """The surfaces of one mesh, ready to be evaluated.
 
     optional: fields of `OPTIONAL_LAYOUT` that vary over any of the surfaces.
-    needs_colors, needs_uvs, needs_tangents: whether any surface reads them.
+    needs_colors, needs_color_steps, needs_uvs, needs_tangents: whether any surface reads them.
     """
 
     def __init__(self, surfaces: tuple[Surface, ...]):
@@ -54,9 +57,11 @@ class MaterialSampler:
         factors = [factor for channel in channels for factor in channel.factors]
         textures = [factor for factor in factors if isinstance(factor, Texture)]
         self.optional = tuple(n for n in OPTIONAL_LAYOUT if any(_varies(getattr(s, n, None)) for s in surfaces))
-        self.needs_colors = any(isinstance(factor, VertexColors) for factor in factors)
+        graphs = [factor.graph for factor in factors if isinstance(factor, Computed)]
+        self.needs_colors = any(isinstance(f, VertexColors) for f in factors) or any(g.reads_colors for g in graphs)
+        self.needs_color_steps = any(graph.reads_colors and graph.looks_up for graph in graphs)
         self.needs_tangents = any(s.normal_map is not None and s.normal_map.space == "TANGENT" for s in surfaces)
-        self.needs_uvs = bool(textures) or self.needs_tangents
+        self.needs_uvs = bool(textures) or self.needs_tangents or any(graph.reads_uvs for graph in graphs)
 
     def fill(self, out: dict[str, np.ndarray], samples: Samples) -> None:
         """Write colours and optional fields, and apply normal maps to the shading normals already in `out`.
@@ -135,8 +140,19 @@ class MaterialSampler:
             looked_up[key] = pyramid.lookup(uvs, pyramid.level_for(_texels_between(steps, pyramid.size)))
         return looked_up[key] if factor.uses_alpha else _on_black(looked_up[key])
 
+    def _computed(self, factor: Computed, samples: Samples, looked_up) -> np.ndarray:
+        inputs = len(samples.materials), samples.uvs, samples.colors, samples.uv_steps, samples.color_steps
+        values = evaluate(factor.graph, Inputs(*inputs))
+        rgba = np.ones((4, inputs[0]), np.float32)
+        rgba[:3] = values
+        return rgba.T
 
-_READERS = {VertexColors: MaterialSampler._vertex_colors, Texture: MaterialSampler._texture}
+
+_READERS = {
+    VertexColors: MaterialSampler._vertex_colors,
+    Texture: MaterialSampler._texture,
+    Computed: MaterialSampler._computed,
+}
 
 
 def placed(texture: Texture, samples: Samples) -> tuple[np.ndarray | None, np.ndarray | None]:

@@ -117,18 +117,24 @@ class SampleFiller:
             out["materials"][...] = 0
         else:
             out["materials"][...] = mesh.materials.take(triangles).take(triangle)
-        colors = uvs = uv_steps = tangents = None
+        colors = color_steps = uvs = uv_steps = tangents = None
         if sampler.needs_colors and mesh.corner_colors is not None:
             colors = self._samples(mesh.corner_colors, triangles, weights, line)
+            if sampler.needs_color_steps:
+                color_steps = self._steps(mesh.corner_colors, triangles, weights, triangle)
         if sampler.needs_uvs and mesh.corner_uvs is not None:
             uvs = self._samples(mesh.corner_uvs, triangles, weights, line)
-            corner_uvs = _at_corners(mesh.corner_uvs, triangles)
-            uv_steps = weights.gradients(corner_uvs.swapaxes(0, 1)).take(triangle, axis=2)
+            uv_steps = self._steps(mesh.corner_uvs, triangles, weights, triangle)
         if self._tangents is not None:
             tangents = self._samples(self._tangents, triangles, weights, line)
-        samples = Samples(out["materials"], colors, uvs, uv_steps, tangents)
+        samples = Samples(out["materials"], colors, uvs, uv_steps, tangents, color_steps)
         sampler.fill(out, samples)
         return samples
+
+    @staticmethod
+    def _steps(corner_values: np.ndarray, triangles: np.ndarray, weights: _SpanWeights, triangle) -> np.ndarray:
+        """(2, c, n) change of (T, 3, c) corner values per column and per row."""
+        return weights.gradients(_at_corners(corner_values, triangles).swapaxes(0, 1)).take(triangle, axis=2)
 
     @_quietly
     def _samples(

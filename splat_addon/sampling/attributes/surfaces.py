@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Describes a material as far as surfels can store it: each input of a Principled shader as a `Channel`.
 
-A channel is a product of a constant, textures and vertex colours, which is what importers and painters produce.
-`sampler` evaluates it at samples of the surface.
+A channel is a product of a constant, textures and vertex colours, which is what importers and painters produce, or a
+graph of shading nodes. `sampler` evaluates it at samples of the surface.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...images import Image
+from ...shading_nodes import Graph
 
 RED, GREEN, BLUE, ALPHA = ((*np.eye(4)[k].tolist(),) for k in range(4))
 
@@ -65,6 +66,17 @@ class VertexColors:
 
 
 @dataclass(frozen=True, eq=False)
+class Computed:
+    """What a graph of shading nodes makes of the mesh's layers: one number, or a colour."""
+
+    graph: Graph
+    weights = None
+
+
+Factor = Texture | VertexColors | Computed
+
+
+@dataclass(frozen=True, eq=False)
 class Channel:
     """A material quantity: a constant times factors.
 
@@ -73,12 +85,12 @@ class Channel:
     """
 
     value: tuple[float, ...]
-    factors: Texture | VertexColors | tuple[Texture | VertexColors, ...] = ()
+    factors: Factor | tuple[Factor, ...] = ()
 
     def __post_init__(self):
         if len(self.value) not in (1, 3, 4) or not np.isfinite(self.value).all():
             raise ValueError(f"A channel's value must be 1, 3 or 4 finite numbers, not {self.value!r}.")
-        is_one = isinstance(self.factors, Texture | VertexColors)
+        is_one = isinstance(self.factors, Factor)
         object.__setattr__(self, "factors", (self.factors,) if is_one else tuple(self.factors))
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..attributes.lifts import LEAST_LIFT, MOST_LIFT
-from ..attributes.surfaces import Surface, Texture, VertexColors
+from ..attributes.surfaces import Computed, Surface, Texture, VertexColors
 from ..edges.borders import Borders, EdgeSurvey
 from ..edges.ordering import grouped
 from ..mesh.connectivity import part_labels
@@ -88,8 +88,9 @@ def _of_surfaces(mesh: TriangleMesh, triangles: np.ndarray, values: list[bool]) 
     return np.array(values)[np.minimum(mesh.materials.take(triangles), len(values) - 1)]
 
 
-def _textures(surface: Surface) -> list[Texture]:
-    return [f for channel in surface.channels().values() for f in channel.factors if isinstance(f, Texture)]
+def _textures(surface: Surface) -> list[Texture | Computed]:
+    """What may vary in a triangle whose corners have the same colours."""
+    return [f for channel in surface.channels().values() for f in channel.factors if not isinstance(f, VertexColors)]
 
 
 def is_plain(surface: Surface, is_mapped: bool) -> bool:
@@ -105,7 +106,8 @@ def is_plain(surface: Surface, is_mapped: bool) -> bool:
 
 def _reads_colors(mesh: TriangleMesh) -> bool:
     channels = (channel for surface in mesh.surfaces for channel in surface.channels().values())
-    reads = any(isinstance(factor, VertexColors) for channel in channels for factor in channel.factors)
+    factors = [factor for channel in channels for factor in channel.factors]
+    reads = any(isinstance(f, VertexColors) or (isinstance(f, Computed) and f.graph.reads_colors) for f in factors)
     return reads and mesh.corner_colors is not None
 
 

@@ -180,10 +180,10 @@ def test_an_animation_reads_an_unchanged_image_once(scene, add_textured, tmp_pat
     image.filepath_raw, image.file_format = str(path), "OPEN_EXR"
     image.save()
     add_textured(textured_material(bpy.data.images.load(str(path))))
-    from splat_addon.blender.materials import material_surfaces
+    from splat_addon.blender.materials import mesh_layers
 
-    reads, original = [], material_surfaces.linear_pixels
-    monkeypatch.setattr(material_surfaces, "linear_pixels", lambda *a: reads.append(a[0].name) or original(*a))
+    reads, original = [], mesh_layers.linear_pixels
+    monkeypatch.setattr(mesh_layers, "linear_pixels", lambda *a: reads.append(a[0].name) or original(*a))
     scene.frame_start, scene.frame_end, scene.render.filepath = 1, 3, str(tmp_path / "frame")
     bpy.ops.render.render(animation=True)
     assert len(list(tmp_path.glob("frame*"))) == 3 and len(reads) == 1

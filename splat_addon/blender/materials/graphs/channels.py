@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Reads an input of a shader, or a product of two, as a graph."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from ....shading_nodes import Graph
+from ..mesh_layers import MeshLayers
+from ..node_walks import Node
+from ..socket_ranges import range_of
+from ..surface_shaders import SHADERS, Shader
+from ..transparent_mixes import TransparentMix
+from . import converters, seen_straight_on, sources, vector_readers  # noqa: F401 they register what nodes become
+from .reading import GraphReading, Value
+
+
+@dataclass(frozen=True, eq=False)
+class ReadGraph:
+    """images: number of a step that looks up an image -> its node, and whether it keeps its alpha. doubts: what was not
+    read -> how a sentence about it ends."""
+
+    graph: Graph
+    images: dict[int, tuple[Node, bool]]
+    doubts: dict[str, str]
+
+
+def read_channel(shader: Shader, name: str, layers: MeshLayers, mix: TransparentMix | None = None) -> ReadGraph:
+    """A field of `Surface` of a shader; mix: with a Transparent BSDF, whose factor multiplies the opacity.
+
+    Raises UnreadableError if nothing of it can be read.
+    """
+    reading = GraphReading(layers, shader.groups)
+    given = [_limited(reading, shader, socket) for socket in SHADERS[shader.node.bl_idname].get(name, ())]
+    if mix is not None and name == "opacity":
+        inner = GraphReading(layers, mix.mix.groups)
+        inner.steps, inner.images, inner.doubts = reading.steps, reading.images, reading.doubts
+        factor = inner.add("in range", inner.read_strictly(mix.mix.node.inputs[0]), settings=(0.0, 1.0))
+        given.append(inner.add("invert", Value((1.0,)), factor) if mix.is_first else factor)
+    value, *others = given
+    for other in others:
+        width = max(value.width, other.width)
+        value = reading.add("multiplied", value, other, width=width, is_color=width == 3)
+    return ReadGraph(*reading.graph(value), reading.doubts)
+
+
+def read_color(socket, groups: tuple[Node, ...], layers: MeshLayers) -> ReadGraph:
+    """A colour socket of any node. Raises UnreadableError if nothing of it can be read."""
+    reading = GraphReading(layers, groups)
+    return ReadGraph(*reading.graph(reading.read_strictly(socket)), reading.doubts)
+
+
+def _limited(reading: GraphReading, shader: Shader, name: str) -> Value:
+    """An input of a shader, in the range that it takes."""
+    value = reading.read_strictly(shader.node.inputs[name])
+    limits = range_of(shader.node, name)
+    return reading.add("in range", value, settings=limits, width=value.width, is_color=value.is_color)

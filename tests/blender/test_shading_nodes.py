@@ -1,0 +1,232 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Node chains have the values that Cycles gives them."""
+
+import bpy
+import numpy as np
+import pytest
+
+from splat_addon.blender.geometry.mesh_extraction import read_mesh
+from splat_addon.shading_nodes import numbers, vectors
+from splat_addon.shading_nodes.colors import hue_saturation
+from splat_addon.shading_nodes.mixing import BLENDS
+
+from .atlas import Chain, compared
+
+
+def builds() -> dict:
+    found = {
+        "hue saturation": lambda c: c.add(
+            "HueSaturation", {"Hue": 0.7, "Saturation": 1.3, "Value": 0.9, "Fac": 0.8, "Color": c.color}
+        ).outputs[0],
+        "bright contrast": lambda c: c.add("BrightContrast", {0: c.color, 1: 0.1, 2: 0.4}).outputs[0],
+        "gamma": lambda c: c.add("Gamma", {0: c.color, 1: 2.2}).outputs[0],
+        "invert": lambda c: c.add("Invert", {0: 0.7, 1: c.color}).outputs[0],
+        "black and white": lambda c: c.add("RGBToBW", {0: c.color}).outputs[0],
+        "clamp": lambda c: c.add("Clamp", {0: c.number, 1: 0.2, 2: 0.7}).outputs[0],
+        "clamp range": lambda c: c.add("Clamp", {0: c.number, 1: 0.7, 2: 0.2}, clamp_type="RANGE").outputs[0],
+        "blackbody": lambda c: c.add("Blackbody", {0: c.math("MULTIPLY_ADD", c.part("X"), 11000.0, 1000.0)}).outputs[0],
+        "wavelength": lambda c: c.add("Wavelength", {0: c.math("MULTIPLY_ADD", c.part("X"), 420.0, 370.0)}).outputs[0],
+        "vertex color": lambda c: c.add("VertexColor", layer_name="Col").outputs[0],
+        "attribute factor": lambda c: c.add("Attribute", attribute_name="Col").outputs["Fac"],
+        "generated": lambda c: c.add("TexCoord").outputs["Generated"],
+        "object": lambda c: c.add("TexCoord").outputs["Object"],
+        "texture normal": lambda c: c.add("TexCoord").outputs["Normal"],
+        "position": lambda c: c.add("NewGeometry").outputs["Position"],
+        "object color": lambda c: c.add("ObjectInfo").outputs["Color"],
+        "object random": lambda c: c.add("ObjectInfo").outputs["Random"],
+        "material index": lambda c: c.add("ObjectInfo").outputs["Material Index"],
+    }
+    for blend in BLENDS:
+        found[f"mix {blend}"] = lambda c, blend=blend: mixed(c, blend)
+    for operation in numbers.OPERATIONS:
+        found[f"math {operation}"] = lambda c, o=operation: c.math(
+            o, c.number, c.math("MULTIPLY_ADD", c.part("Y"), 2.0, -0.7), 0.4
+        )
+    for operation in (*vectors.OPERATIONS, *vectors.SCALED):
+        found[f"vector {operation}"] = lambda c, o=operation: vector(c, o)
+    for how in ("LINEAR", "STEPPED", "SMOOTHSTEP", "SMOOTHERSTEP"):
+        found[f"map range {how}"] = lambda c, h=how: ranged(c, h, "FLOAT")
+        found[f"map range vector {how}"] = lambda c, h=how: ranged(c, h, "FLOAT_VECTOR")
+    for mode in ("RGB", "HSV", "HSL"):
+        found[f"separate {mode}"] = lambda c, m=mode: separated(c, m)
+    for kind in ("POINT", "TEXTURE", "VECTOR", "NORMAL"):
+        found[f"mapping {kind}"] = lambda c, k=kind: mapping(c, k)
+    for kind in ("AXIS_ANGLE", "X_AXIS", "Y_AXIS", "Z_AXIS", "EULER_XYZ"):
+        found[f"rotate {kind}"] = lambda c, k=kind: turned(c, k)
+    found |= {
+        "rgb curves": curves,
+        "vector curves": vector_curves,
+        "float curve": float_curve,
+        "ramp": ramp,
+        "stepped ramp": stepped,
+    }
+    for projection in ("FLAT", "BOX", "SPHERE", "TUBE"):
+        found[f"image {projection}"] = lambda c, p=projection: image(c, p)
+    return found
+
+
+def mixed(c, blend):
+    other = c.add("CombineColor", {0: c.part("Y"), 1: 0.3, 2: c.part("X")}).outputs[0]
+    return c.add(
+        "Mix", {"Factor_Float": 0.7, "A_Color": c.color, "B_Color": other}, data_type="RGBA", blend_type=blend
+    ).outputs[2]
+
+
+def used(node):
+    """The output that the node's mode uses."""
+    return next(socket for socket in node.outputs if socket.enabled)
+
+
+def vector(c, operation):
+    a = c.add("CombineXYZ", {0: c.number, 1: c.part("Y"), 2: 0.3}).outputs[0]
+    given = {"Vector": a, "Vector_001": (0.4, -0.3, 0.8), "Vector_002": (0.1, 0.2, 0.3), "Scale": 0.6}
+    return used(c.add("VectorMath", given, operation=operation))
+
+
+def ranged(c, how, kind):
+    names = ("From Min", "From Max", "To Min", "To Max", "Steps")
+    if kind == "FLOAT":
+        given = {"Value": c.number} | dict(zip(names, (-0.5, 1.2, 0.1, 0.9, 3.0), strict=True))
+    else:
+        rows = (0.1, 0.2, 0.0), (0.8, 0.7, 1.2), (0.1, 0.3, 0.2), (0.9, 0.6, 1.1), (2, 3, 4)
+        given = {"Vector": c.color} | {f"{n.replace(' ', '_')}_FLOAT3": row for n, row in zip(names, rows, strict=True)}
+    return used(c.add("MapRange", given, data_type=kind, interpolation_type=how))
+
+
+def separated(c, mode):
+    parts = c.add("SeparateColor", {0: c.color}, mode=mode).outputs
+    moved = {0: c.math("ADD", parts[0], 0.2), 1: c.math("MULTIPLY", parts[1], 0.8), 2: parts[2]}
+    return c.add("CombineColor", moved, mode=mode).outputs[0]
+
+
+def mapping(c, kind):
+    given = {"Vector": c.color, "Rotation": (0.3, 0.5, 0.7), "Scale": (1.5, 0.7, 2.0)}
+    if kind in ("POINT", "TEXTURE"):
+        given["Location"] = (0.1, 0.2, 0.3)
+    return c.add("Mapping", given, vector_type=kind).outputs[0]
+
+
+def turned(c, kind):
+    given = {"Vector": c.color, "Center": (0.2, 0.1, 0.0), "Axis": (0.3, 0.5, 0.8), "Angle": 0.8}
+    return c.add("VectorRotate", given | {"Rotation": (0.3, 0.5, 0.7)}, rotation_type=kind, invert=True).outputs[0]
+
+
+def bent(node):
+    for curve, y in zip(node.mapping.curves, (0.7, 0.3, 0.9, 0.6), strict=False):
+        curve.points.new(0.4, y)
+    node.mapping.update()
+    return node.outputs[0]
+
+
+def curves(c):
+    return bent(c.add("RGBCurve", {0: 0.8, 1: c.color}))
+
+
+def vector_curves(c):
+    return bent(c.add("VectorCurve", {0: 0.8, 1: c.color}))
+
+
+def float_curve(c):
+    return bent(c.add("FloatCurve", {0: 0.8, 1: c.number}))
+
+
+def ramp(c):
+    node = c.add("ValToRGB", {0: c.part("X")})
+    node.color_ramp.elements.new(0.3).color = 0.9, 0.2, 0.1, 1
+    return node.outputs[0]
+
+
+def stepped(c):
+    node = c.add("ValToRGB", {0: c.part("X")})
+    node.color_ramp.interpolation = "CONSTANT"
+    node.color_ramp.elements.new(0.3).color = 0.9, 0.2, 0.1, 1
+    return node.outputs[0]
+
+
+def image(c, projection):
+    found = bpy.data.images.get("random") or bpy.data.images.new("random", 8, 4, float_buffer=True)
+    found.pixels.foreach_set(np.random.default_rng(1).random(8 * 4 * 4).astype(np.float32))
+    found.alpha_mode = "CHANNEL_PACKED"
+    vector = c.add("TexCoord").outputs["Object"]
+    vector = c.add("Mapping", {"Vector": vector, "Scale": (0.3, 0.4, 0.5)}).outputs[0]
+    return c.add("TexImage", {0: vector}, image=found, projection=projection, interpolation="Linear").outputs[0]
+
+
+def test_each_node_has_the_values_of_cycles(tmp_path):
+    results = compared(builds(), tmp_path)
+    print({name: round(result.db) for name, result in results.items()})
+    wrong = {name: round(result.db) for name, result in results.items() if result.db < 38}
+    assert wrong == {}
+
+
+@pytest.fixture
+def surface(add_square):
+    """surface(build) -> the `Surface` of a square, and what was not read of it. build: as of `compared`."""
+
+    def made(build):
+        chain = Chain("one")
+        chain.ends_in(build(chain))
+        square = add_square()
+        square.data.materials.append(chain.material)
+        bpy.context.view_layer.update()
+        read = read_mesh(square.evaluated_get(bpy.context.evaluated_depsgraph_get()), square.data)
+        return read.triangles.surfaces[0], read.notes
+
+    return made
+
+
+def test_images_and_colour_nodes_at_one_place_become_one_image(surface):
+    """Such an image can be drawn on polygons, and is filtered like any other."""
+
+    def tinted(c):
+        hue = c.add("HueSaturation", {"Hue": 0.7, "Color": flat_image(c, "first", 8)}).outputs[0]
+        small = c.add("MixRGB", {0: 0.0, 1: hue, 2: flat_image(c, "small", 4)}).outputs[0]
+        return c.add(
+            "Mix", {"Factor_Float": 0.5, "A_Color": small, "B_Color": flat_image(c, "second", 8)}, data_type="RGBA"
+        ).outputs[2]
+
+    found, notes = surface(tinted)
+    (texture,) = found.emission.factors
+    first, second = (np.reshape(bpy.data.images[name].pixels, (64, 4))[:, :3].T for name in ("first", "second"))
+    expected = (hue_saturation(0.7, 1.0, 1.0, 1.0, first) + second) / 2
+    assert notes == [] and texture.image.pixels.shape == (8, 8, 4)
+    assert np.allclose(texture.image.pixels[..., :3].reshape(64, 3).T, expected, atol=1e-5)
+
+
+def flat_image(c, name, size):
+    found = bpy.data.images.new(name, size, size, float_buffer=True)
+    found.pixels.foreach_set(np.random.default_rng(len(name)).random(size * size * 4).astype(np.float32))
+    found.alpha_mode = "CHANNEL_PACKED"
+    return c.add("TexImage", image=found).outputs[0]
+
+
+def test_what_depends_on_the_view_is_as_seen_straight_on(surface):
+    """The mix of red and green by Facing shows red, and Fresnel is that of the index of refraction."""
+    colors = {"A_Color": (1, 0, 0, 1), "B_Color": (0, 1, 0, 1)}
+    facing = lambda c: c.add("LayerWeight").outputs["Facing"]  # noqa: E731
+    found, notes = surface(lambda c: c.add("Mix", {"Factor_Float": facing(c), **colors}, data_type="RGBA").outputs[2])
+    assert np.allclose(found.emission.value, (1, 0, 0)) and "Layer Weight node, which depends on the view" in notes[0]
+    assert notes[0].endswith("it looks as if seen straight on")
+    found, _ = surface(lambda c: c.add("Fresnel", {0: 1.5}).outputs[0])
+    assert np.allclose(found.emission.value, 0.04)
+
+
+def unread(c):
+    return c.add("ParticleInfo").outputs["Location"]
+
+
+@pytest.mark.parametrize(
+    "build",
+    [
+        lambda c: c.add("HueSaturation", {"Hue": c.add("Wireframe").outputs[0], "Color": flat_image(c, "left", 4)}),
+        lambda c: c.add("MixRGB", {1: flat_image(c, "left", 4), 2: unread(c)}),
+        lambda c: c.add("AmbientOcclusion", {0: flat_image(c, "left", 4)}),
+        lambda c: c.add("Gamma", {0: c.add("MixRGB", {0: 1.0, 1: unread(c), 2: flat_image(c, "left", 4)}).outputs[0]}),
+    ],
+)
+def test_what_can_be_read_is_shown_and_the_rest_is_named(surface, build):
+    found, notes = surface(lambda c: build(c).outputs[0])
+    (texture,) = found.emission.factors
+    image = np.array(bpy.data.images["left"].pixels).reshape(4, 4, 4)
+    assert np.allclose(texture.image.pixels[..., :3], image[..., :3], atol=1e-5)
+    assert len(notes) == 1 and notes[0].endswith("what can be read of its nodes is used")
