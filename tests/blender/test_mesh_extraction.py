@@ -117,7 +117,7 @@ def test_all_but_the_pixels_is_read_without_them(monkeypatch):
     tree.links.new(node.outputs["Color"], tree.nodes["Principled BSDF"].inputs["Base Color"])
     bpy.context.object.data.materials.append(material)
     full = extract(bpy.context.object).triangles
-    monkeypatch.setattr("splat_addon.blender.materials.material_surfaces.linear_pixels", None)
+    monkeypatch.setattr("splat_addon.blender.materials.mesh_layers.linear_pixels", None)
     short = extract(bpy.context.object, read_without_pixels).triangles
     for name, array in full.per_triangle().items():
         assert np.array_equal(array, getattr(short, name)), name

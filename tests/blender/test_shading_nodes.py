@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from splat_addon.blender.geometry.mesh_extraction import read_mesh
+from splat_addon.blender.materials.graphs.channels import constant_of
+from splat_addon.blender.materials.surface_shaders import surface_shader
 from splat_addon.shading_nodes import numbers, vectors
 from splat_addon.shading_nodes.colors import hue_saturation
 from splat_addon.shading_nodes.mixing import BLENDS
@@ -230,3 +232,18 @@ def test_what_can_be_read_is_shown_and_the_rest_is_named(surface, build):
     image = np.array(bpy.data.images["left"].pixels).reshape(4, 4, 4)
     assert np.allclose(texture.image.pixels[..., :3], image[..., :3], atol=1e-5)
     assert len(notes) == 1 and notes[0].endswith("what can be read of its nodes is used")
+
+
+def test_what_nodes_feed_a_shader_everywhere_alike_is_no_plain_value():
+    """Roughness by a Math node is a number of the whole material; by a texture or an object it is none."""
+    material = Chain("rough").material
+    principled = material.node_tree.nodes.new("ShaderNodeBsdfPrincipled")
+    material.node_tree.links.new(principled.outputs[0], material.node_tree.get_output_node("ALL").inputs[0])
+    math = material.node_tree.nodes.new("ShaderNodeMath")
+    math.inputs[0].default_value, math.inputs[1].default_value = 0.1, 0.2
+    material.node_tree.links.new(math.outputs[0], principled.inputs["Roughness"])
+    assert np.allclose(constant_of(surface_shader(material), "Roughness"), 0.3)
+    for kind, output in (("UVMap", 0), ("ObjectInfo", 3)):
+        node = material.node_tree.nodes.new(f"ShaderNode{kind}")
+        material.node_tree.links.new(node.outputs[output], math.inputs[1])
+        assert constant_of(surface_shader(material), "Roughness") is None

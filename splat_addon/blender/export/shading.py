@@ -13,6 +13,7 @@ import numpy as np
 from ...rendering import Finish, Light, Material
 from ...rendering.scene.material import reflectance
 from ..geometry.node_groups import nodes_in
+from ..materials.graphs.channels import constant_of
 from ..materials.mean_surfaces import mean_of
 from ..materials.node_trees import uses_nodes
 from ..materials.socket_ranges import is_radiance
@@ -91,10 +92,14 @@ def _emission(light: bpy.types.Light, notes) -> np.ndarray:
 
 def color_times_strength(shader: Shader, owner: str, notes) -> tuple[float, float, float]:
     """Colour times strength of a Background or Emission shader. owner: the subject of a sentence."""
-    if shader.socket("Color").is_linked or shader.socket("Strength").is_linked:
-        notes.add(f"{owner} is textured; its {shader.node.bl_label} node's plain colour and strength are used")
-    (strength,) = shader.plain("Strength").value
-    return tuple(channel * strength for channel in shader.plain("Color").value)
+    read = {}
+    for name, said in (("Color", "colour"), ("Strength", "strength")):
+        read[name] = constant_of(shader, name) if shader.socket(name).is_linked else shader.plain(name).value
+        if read[name] is None:
+            notes.add(f"{owner} is textured; its {shader.node.bl_label} node's plain {said} is used")
+            read[name] = shader.plain(name).value
+    (strength,) = read["Strength"]
+    return tuple(channel * strength for channel in read["Color"])
 
 
 BLACK = (0.0, 0.0, 0.0)
@@ -163,12 +168,13 @@ def _mean(materials: list[Material], mixed: list[Part]) -> Material:
 def _made(shader: Shader, material: bpy.types.Material, notes, own: Collection[str]) -> Material:
     """The material of one of its shaders."""
     fields, make = _SHADERS[shader.node.type]
-    plain = {name: _value(shader, name) for name in fields}
+    constants = {name: constant_of(shader, name) for name in fields if shader.socket(name).is_linked}
+    plain = {name: _value(shader, name, constants.get(name)) for name in fields}
     if emission := [name for name, field in fields.items() if field == "emission"]:
         sent = finite_radiance(_sent(plain, *emission), f"The material {material.name!r}", notes)
         plain |= dict(zip(emission, (sent, 1.0), strict=True))
     made = make(plain)
-    linked = [name for name, field in fields.items() if shader.socket(name).is_linked and field not in own]
+    linked = [name for name, field in fields.items() if constants.get(name, ()) is None and field not in own]
     if not any(made.emission):
         linked = [name for name in linked if fields[name] != "emission" or "Strength" in name]
     if missing := [name for name in linked if fields[name]]:
@@ -184,9 +190,9 @@ def _made(shader: Shader, material: bpy.types.Material, notes, own: Collection[s
     return made
 
 
-def _value(shader: Shader, name: str):
-    """The plain value of a socket."""
-    value = shader.plain(name).value
+def _value(shader: Shader, name: str, fed: tuple[float, ...] | None):
+    """The value of a socket: what is fed, or its own."""
+    value = fed or shader.plain(name).value
     return value[0] if len(value) == 1 else value
 
 

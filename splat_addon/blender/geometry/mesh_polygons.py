@@ -68,7 +68,8 @@ def _only_at_corners(surface: Surface) -> Iterator[str]:
 def needs_surfels(mesh: TriangleMesh) -> bool:
     """Whether polygons cannot show what it looks like: it is transparent, or its nodes make its colours."""
     channels = [channel for surface in _used(mesh) for channel in (surface.color, surface.emission) if channel]
-    has_nodes = any(isinstance(factor, Computed) for channel in channels for factor in channel.factors)
+    factors = [factor for channel in channels for factor in channel.factors]
+    has_nodes = any(isinstance(factor, Computed) and not factor.graph.is_constant for factor in factors)
     return has_nodes or is_transparent(mesh)
 
 

@@ -214,7 +214,8 @@ class _Reader:
 
     def _of_graph(self, name: str, read: ReadGraph, alpha_of: bpy.types.Node | None = None) -> Channel:
         self._unread += [Unread(name, reason, used) for reason, used in read.doubts.items()]
-        if read.graph.is_constant:
+        # of a constant, the renderer knows only what is the same for all objects
+        if read.graph.is_constant and not (read.asks_owner and name in ("roughness", "metallic", "emission")):
             value = constant_value(read.graph)
             return Channel(value if _WIDTHS[name] == len(value) else value * 3)
         one = (1.0,) * _WIDTHS[name]

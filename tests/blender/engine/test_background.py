@@ -107,7 +107,7 @@ def test_a_textured_world_is_said_to_be_used_plainly(scene, add_camera, add_worl
     sky = tree.nodes.new("ShaderNodeTexNoise")
     tree.links.new(sky.outputs["Color"], tree.nodes["Background"].inputs["Color"])
     picture()
-    assert "The world 'world' is textured; its Background node's plain colour and strength are used" in said()
+    assert "The world 'world' is textured; its Background node's plain colour is used" in said()
 
 
 @pytest.fixture

@@ -5,11 +5,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from ....shading_nodes import Graph
+from ....shading_nodes import Graph, constant_value
 from ..mesh_layers import MeshLayers
 from ..node_walks import Node
 from ..socket_ranges import range_of
 from ..surface_shaders import SHADERS, Shader
+from ..texture_images import UnreadableError
 from ..transparent_mixes import TransparentMix
 from . import converters, seen_straight_on, sources, vector_readers  # noqa: F401 they register what nodes become
 from .reading import GraphReading, Value
@@ -18,11 +19,12 @@ from .reading import GraphReading, Value
 @dataclass(frozen=True, eq=False)
 class ReadGraph:
     """images: number of a step that looks up an image -> its node, and whether it keeps its alpha. doubts: what was not
-    read -> how a sentence about it ends."""
+    read -> how a sentence about it ends. asks_owner: whether it depends on the object that shows the mesh."""
 
     graph: Graph
     images: dict[int, tuple[Node, bool]]
     doubts: dict[str, str]
+    asks_owner: bool = False
 
 
 def read_channel(shader: Shader, name: str, layers: MeshLayers, mix: TransparentMix | None = None) -> ReadGraph:
@@ -41,7 +43,31 @@ def read_channel(shader: Shader, name: str, layers: MeshLayers, mix: Transparent
     for other in others:
         width = max(value.width, other.width)
         value = reading.add("multiplied", value, other, width=width, is_color=width == 3)
-    return ReadGraph(*reading.graph(value), reading.doubts)
+    return ReadGraph(*reading.graph(value), reading.doubts, reading.asks_owner)
+
+
+class _Nothing:
+    """Stands for the layers of a mesh, and is asked for none of them if an input is the same everywhere."""
+
+    mesh = material = owner = None
+
+    def __init__(self):
+        self.is_asked = False
+
+    def __getattr__(self, name: str):
+        self.is_asked = True
+        raise UnreadableError("the mesh")
+
+
+def constant_of(shader: Shader, name: str) -> tuple[float, ...] | None:
+    """The 1 or 3 numbers of a shader's socket that nodes feed; None if they vary, or nothing of them can be read."""
+    layers = _Nothing()
+    reading = GraphReading(layers, shader.groups)
+    try:
+        graph, _ = reading.graph(_limited(reading, shader, name))
+    except UnreadableError:
+        return None
+    return None if layers.is_asked or reading.asks_owner else constant_value(graph)
 
 
 def read_color(socket, groups: tuple[Node, ...], layers: MeshLayers) -> ReadGraph:

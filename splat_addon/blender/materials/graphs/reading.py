@@ -47,6 +47,7 @@ class GraphReading(Walk):
         self.steps: list[Step] = []
         self._same: dict[tuple, int] = {}
         self.doubts: dict[str, str] = {}
+        self.asks_owner = False
         self.images: dict[int, tuple[Node, bool]] = {}
 
     def add(self, kind: str, *inputs: Value, settings: tuple = (), width: int = 1, is_color: bool = False) -> Value:
@@ -159,6 +160,7 @@ class GraphReading(Walk):
     @property
     def owner(self) -> bpy.types.Object:
         """The object whose material is read. Raises UnreadableError if it is not known."""
+        self.asks_owner = True
         if self.layers.owner is None:
             raise UnreadableError("its object")
         return self.layers.owner
