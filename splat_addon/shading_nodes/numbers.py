@@ -147,4 +147,4 @@ def map_range(value, from_low, from_high, to_low, to_high, steps, how: str, clam
     return clamped(result, to_low, to_high, True) if clamps and how in ("LINEAR", "STEPPED") else result
 
 
-FUNCTIONS = {"math": math, "clamp": clamped, "map range": map_range}
+FUNCTIONS = {"math": math, "divided": divided, "clamp": clamped, "map range": map_range}

@@ -8,6 +8,7 @@ import pytest
 from splat_addon.blender.geometry.mesh_extraction import read_mesh
 from splat_addon.blender.materials.graphs.channels import constant_of
 from splat_addon.blender.materials.surface_shaders import surface_shader
+from splat_addon.blender.working_space import luminance
 from splat_addon.shading_nodes import numbers, vectors
 from splat_addon.shading_nodes.colors import hue_saturation
 from splat_addon.shading_nodes.mixing import BLENDS
@@ -247,3 +248,27 @@ def test_what_nodes_feed_a_shader_everywhere_alike_is_no_plain_value():
         node = material.node_tree.nodes.new(f"ShaderNode{kind}")
         material.node_tree.links.new(node.outputs[output], math.inputs[1])
         assert constant_of(surface_shader(material), "Roughness") is None
+
+
+def test_shaders_mixed_by_nodes_show_each_where_it_is(surface):
+    """By an image's colour, two shaders are mixed pixel by pixel; what is transparent takes none of the colour."""
+
+    def mixed_shaders(c):
+        mix, diffuse = (c.tree.nodes.new(f"ShaderNode{kind}") for kind in ("MixShader", "BsdfDiffuse"))
+        diffuse.inputs["Color"].default_value = (1, 0, 0, 1)
+        principled = c.tree.nodes.new("ShaderNodeBsdfPrincipled")
+        principled.inputs["Base Color"].default_value, principled.inputs["Alpha"].default_value = (0, 1, 0, 1), 0.5
+        c.tree.links.new(flat_image(c, "mask", 4), mix.inputs[0])
+        c.tree.links.new(diffuse.outputs[0], mix.inputs[1])
+        c.tree.links.new(principled.outputs[0], mix.inputs[2])
+        c.tree.links.new(mix.outputs[0], c.tree.get_output_node("ALL").inputs["Surface"])
+        return c.add("RGB").outputs[0]
+
+    found, notes = surface(mixed_shaders)
+    mask = np.reshape(bpy.data.images["mask"].pixels, (4, 4, 4))[..., :3] @ luminance()[:3]
+    opacity = 1 - mask / 2
+    assert notes == []
+    assert np.allclose(found.opacity.factors[0].image.pixels[..., 0], opacity, atol=1e-5)
+    color = found.color.factors[0].image.pixels
+    assert np.allclose(color[..., 0], (1 - mask) / opacity, atol=1e-5) and np.allclose(color[..., 2], 0)
+    assert np.allclose(color[..., 1], mask / 2 / opacity, atol=1e-5)

@@ -17,6 +17,7 @@ from ...sampling.attributes.surfaces import ALPHA, RED
 from ...shading_nodes import constant_value
 from .graphs.channels import ReadGraph, read_channel, read_color
 from .graphs.flattened import flattened
+from .graphs.mixes import read_mixed
 from .graphs.reading import STRAIGHT_ON
 from .mean_surfaces import mean_of
 from .mesh_layers import MeshLayers, default_color_layer
@@ -90,8 +91,7 @@ def material_surface(material: bpy.types.Material | None, layers: MeshLayers) ->
         surface, unread = _Reader(mean.only, layers).surface()
         if not any(each.can_be_baked for each in unread):
             return surface, unread
-    unread = [Unread(channel, called(shader.node)) for channel in channels(shader) if mean.unsure]
-    return mean.surface, unread
+    return _mixture(shader, layers) if mean.unsure else (mean.surface, [])
 
 
 def _behind_holes(shader: Shader | None, layers: MeshLayers) -> tuple[Surface, list[Unread]] | None:
@@ -124,6 +124,47 @@ def _bare_surface(layers: MeshLayers) -> Surface:
     if not default_color_layer(layers.mesh):
         return Surface()
     return Surface(Channel((1.0, 1.0, 1.0, 1.0), VertexColors(layers.color(""))))
+
+
+def _mixture(shader: Shader, layers: MeshLayers) -> tuple[Surface, list[Unread]]:
+    """The surface of a tree of shaders whose parts or shares vary."""
+    read = {name: read_mixed(shader, name, layers) for name in channels(shader)}
+    unread = [each for name, graph in read.items() for each in _doubted(name, graph)]
+    made = {name: _channel_of(name, graph, layers, is_mixed=True) for name, graph in read.items()}
+    color, opacity = made["color"], made.get("opacity")
+    if opacity is None or opacity.factors:
+        color = Channel((*color.value, 1.0), color.factors)
+        return Surface(color, opacity, emission=made.get("emission")), unread
+    color = Channel((*color.value, opacity.value[0]), color.factors)
+    return Surface(color, emission=made.get("emission")), unread
+
+
+def _doubted(name: str, read: ReadGraph) -> list[Unread]:
+    return [Unread(name, reason, used) for reason, used in read.doubts.items()]
+
+
+def _channel_of(
+    name: str, read: ReadGraph, layers: MeshLayers, alpha_of: bpy.types.Node | None = None, is_mixed: bool = False
+) -> Channel:
+    """The channel of a graph: a constant, one image, or the graph.
+
+    alpha_of: an image whose alpha goes along. is_mixed: whether it is of several shaders.
+    """
+    # such a constant the renderer knows of one shader, if it is the same for all objects
+    is_known = name not in ("roughness", "metallic", "emission") or not (read.asks_owner or is_mixed)
+    one = (1.0,) * _WIDTHS[name]
+    if read.graph.is_constant and is_known:
+        value = constant_value(read.graph)
+        return Channel(value if len(one) == len(value) else value * 3)
+    flat = flattened(read.graph, read.images, layers, alpha_of)
+    try:
+        if flat is not None:
+            layer, matrix, wraps = placement(flat[1], layers.mesh)
+            weights = RED if len(one) == 1 else None
+            return Channel(one, Texture(flat[0], layers.uv(layer), matrix, weights, alpha_of is not None, wraps))
+    except UnreadableError:
+        pass  # the image lies where only the graph can place it
+    return Channel(one, Computed(read.graph))
 
 
 class _Reader:
@@ -181,7 +222,7 @@ class _Reader:
         try:
             factors = tuple(self._factor(source, _is_alpha(source) and source.is_number) for source in read.sources)
         except UnreadableError:
-            return self._sent(name, self._computed(name))
+            return self._sent(name, self._computed(name, self._mix if name == "opacity" else None))
         value = read.value * (3 // len(read.value)) if name == "emission" else read.value
         return self._sent(name, Channel(value, factors))
 
@@ -213,22 +254,8 @@ class _Reader:
         return Channel(read.value if _WIDTHS[name] == len(read.value) else read.value * 3)
 
     def _of_graph(self, name: str, read: ReadGraph, alpha_of: bpy.types.Node | None = None) -> Channel:
-        self._unread += [Unread(name, reason, used) for reason, used in read.doubts.items()]
-        # of a constant, the renderer knows only what is the same for all objects
-        if read.graph.is_constant and not (read.asks_owner and name in ("roughness", "metallic", "emission")):
-            value = constant_value(read.graph)
-            return Channel(value if _WIDTHS[name] == len(value) else value * 3)
-        one = (1.0,) * _WIDTHS[name]
-        flat = flattened(read.graph, read.images, self._layers, alpha_of)
-        if flat is not None:
-            image, node = flat
-            try:
-                layer, matrix, wraps = placement(node, self._layers.mesh)
-            except UnreadableError:
-                return Channel(one, Computed(read.graph))
-            weights = RED if len(one) == 1 else None
-            return Channel(one, Texture(image, self._layers.uv(layer), matrix, weights, alpha_of is not None, wraps))
-        return Channel(one, Computed(read.graph))
+        self._unread += _doubted(name, read)
+        return _channel_of(name, read, self._layers, alpha_of)
 
     def _factor(self, source: ImageSource | AttributeSource, uses_alpha: bool) -> Texture | VertexColors:
         if isinstance(source, AttributeSource):

@@ -187,7 +187,7 @@ def parts(shader: Shader, factor_of: Callable[[Shader], tuple[float, bool]] = mi
         share, is_sure = shares.get(each, (0.0, True))
         if is_sure and share == 0:
             continue
-        sockets = _mixed(each)
+        sockets = mixed_sockets(each)
         if sockets is None:
             yield Part(each, share, is_sure)
             continue
@@ -202,7 +202,7 @@ def parts(shader: Shader, factor_of: Callable[[Shader], tuple[float, bool]] = mi
                 shares[found] = before + share * factor, was_sure and is_sure
 
 
-def _mixed(shader: Shader) -> list[Socket] | None:
+def mixed_sockets(shader: Shader) -> list[Socket] | None:
     """The sockets of the shaders that this one mixes, adds or passes on; None if it does nothing of that."""
     node = shader.node
     if node.mute:
@@ -218,7 +218,7 @@ def _fed_first(shader: Shader, reached: set[Shader]) -> list[Shader]:
     """
     reached.add(shader)
     order = []
-    for socket in reversed(_mixed(shader) or ()):
+    for socket in reversed(mixed_sockets(shader) or ()):
         found = shader.feeding(socket)
         if found is not None and found not in reached:
             order += _fed_first(found, reached)

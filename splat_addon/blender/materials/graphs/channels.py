@@ -33,10 +33,9 @@ def read_channel(shader: Shader, name: str, layers: MeshLayers, mix: Transparent
     Raises UnreadableError if nothing of it can be read.
     """
     reading = GraphReading(layers, shader.groups)
-    given = [_limited(reading, shader, socket) for socket in SHADERS[shader.node.bl_idname].get(name, ())]
+    given = [limited(reading, shader, socket) for socket in SHADERS[shader.node.bl_idname].get(name, ())]
     if mix is not None and name == "opacity":
-        inner = GraphReading(layers, mix.mix.groups)
-        inner.steps, inner.images, inner.doubts = reading.steps, reading.images, reading.doubts
+        inner = reading.inside(mix.mix.groups)
         factor = inner.add("in range", inner.read_strictly(mix.mix.node.inputs[0]), settings=(0.0, 1.0))
         given.append(inner.add("invert", Value((1.0,)), factor) if mix.is_first else factor)
     value, *others = given
@@ -64,7 +63,7 @@ def constant_of(shader: Shader, name: str) -> tuple[float, ...] | None:
     layers = _Nothing()
     reading = GraphReading(layers, shader.groups)
     try:
-        graph, _ = reading.graph(_limited(reading, shader, name))
+        graph, _ = reading.graph(limited(reading, shader, name))
     except UnreadableError:
         return None
     return None if layers.is_asked or reading.asks_owner else constant_value(graph)
@@ -76,7 +75,7 @@ def read_color(socket, groups: tuple[Node, ...], layers: MeshLayers) -> ReadGrap
     return ReadGraph(*reading.graph(reading.read_strictly(socket)), reading.doubts)
 
 
-def _limited(reading: GraphReading, shader: Shader, name: str) -> Value:
+def limited(reading: GraphReading, shader: Shader, name: str) -> Value:
     """An input of a shader, in the range that it takes."""
     value = reading.read_strictly(shader.node.inputs[name])
     limits = range_of(shader.node, name)

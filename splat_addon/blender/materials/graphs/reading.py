@@ -47,8 +47,20 @@ class GraphReading(Walk):
         self.steps: list[Step] = []
         self._same: dict[tuple, int] = {}
         self.doubts: dict[str, str] = {}
-        self.asks_owner = False
+        self._asked: list[bool] = []
         self.images: dict[int, tuple[Node, bool]] = {}
+
+    def inside(self, groups: tuple[Node, ...]) -> GraphReading:
+        """A walk from somewhere else in the tree that adds to the same steps."""
+        other = GraphReading(self.layers, groups)
+        other.steps, other._same, other.images = self.steps, self._same, self.images
+        other.doubts, other._asked = self.doubts, self._asked
+        return other
+
+    @property
+    def asks_owner(self) -> bool:
+        """Whether something depends on the object that shows the mesh."""
+        return bool(self._asked)
 
     def add(self, kind: str, *inputs: Value, settings: tuple = (), width: int = 1, is_color: bool = False) -> Value:
         """One more step. width, is_color: of its result."""
@@ -160,7 +172,7 @@ class GraphReading(Walk):
     @property
     def owner(self) -> bpy.types.Object:
         """The object whose material is read. Raises UnreadableError if it is not known."""
-        self.asks_owner = True
+        self._asked.append(True)
         if self.layers.owner is None:
             raise UnreadableError("its object")
         return self.layers.owner
