@@ -22,7 +22,8 @@ from measuring.timing import in_turn
 from splat_addon.hierarchy import cut_blocks, entries_of
 from splat_addon.quaternions import axes_columns
 from splat_addon.rendering import Renderer, Settings, open_device, plan
-from splat_addon.rendering.detail.levels import hierarchy_of, sight
+from splat_addon.rendering.detail.hierarchies import hierarchy_of
+from splat_addon.rendering.detail.levels import sight
 from splat_addon.rendering.device import Device
 from splat_addon.sampling import PLAIN, sample_mesh
 

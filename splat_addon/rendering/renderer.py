@@ -5,16 +5,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from time import perf_counter
 from typing import NamedTuple
+from weakref import WeakSet
 
 import numpy as np
 
+from ..surfels import Surfels
 from .assembly.accumulation import around_samples, mean_frame, sample_blocks, sample_camera
 from .assembly.near_and_far import NearAndFar
 from .assembly.panorama_faces import panorama_frame
-from .depth_range import clip_range
-from .detail.levels import forget_before, was_drawn
+from .detail.hierarchies import forget_before
+from .detail.history import history, no_history
 from .detail.streamed import Streamed
 from .device import Device
 from .device.interface import Target, texture_bytes
@@ -32,10 +35,11 @@ from .read_back import assembled, background, background_pixel, mended, position
 from .scene import Scene
 from .scene.camera import Camera
 from .scene.panorama import Panorama
+from .scene.table import Kinds
 from .settings import Settings
 from .shadows.receivers import Viewers, viewers
-from .upload.resources import Resources
-from .view import build_view
+from .statistics import counted, new_stats
+from .upload.resources import Resources, TextureKey
 
 #: x, y, width, height in pixels.
 Tile = tuple[int, int, int, int]
@@ -69,6 +73,7 @@ class Renderer:
         self.streamed = Streamed()
         self.near_and_far = NearAndFar()
         self._refining: tuple[Scene, tuple, Shared] | None = None
+        self._drawn: WeakSet[Surfels] = WeakSet()
 
     def render(
         self,
@@ -135,6 +140,8 @@ class Renderer:
         if is_repeatable:
             forget_before(scene)
 
+        # through a lens, each is from a place of its own
+        repeated = 1 if isinstance(camera, Camera) and camera.lens else len(numbers)
         planned = {}
 
         def draw(moved: Camera, of: Viewers, settings: Settings, told: Progress | None, part=None) -> Frame:
@@ -144,8 +151,9 @@ class Renderer:
                 if len(planned) == _MOST_PLANS:
                     planned.clear()
                 around = around_samples(moved, settings.samples)
-                options = {"viewers": of, "part": part, "samples": len(numbers), "is_repeatable": is_repeatable}
-                planned[key] = self._planned(scene, moved, settings, around=around, **options)
+                about = moved, settings, repeated, is_repeatable
+                options = {"viewers": of, "part": part, "samples": len(numbers), "around": around}
+                planned[key] = self._planned(scene, *about, **options)
             return self._frame(planned[key], moved, told, part)
 
         for number in numbers:
@@ -156,21 +164,29 @@ class Renderer:
                 moved = sample_camera(camera, number, settings.samples)
                 frame = draw(moved, viewers(camera, moved), settings, next(turns), part)
             if number == numbers[-1]:
-                was_drawn(scene)
+                self._was_drawn(scene)
             yield frame
 
-    def _planned(self, scene: Scene, camera: Camera, settings: Settings, **options) -> Shared:
-        """The plan of a picture and all that its samples share. options: of `plan`."""
+    def _planned(
+        self, scene: Scene, camera: Camera, settings: Settings, repeated=1, is_repeatable=False, **options
+    ) -> Shared:
+        """The plan of a picture and all that its samples share. repeated: how many samples follow one another. options:
+        of `plan`."""
         scene = self.near_and_far.resolved(scene, camera)
-        frame_plan = plan(scene, camera, settings, **options)
+        before = no_history(scene) if is_repeatable else history(scene, self._drawn)
+        frame_plan = plan(scene, camera, settings, history=before, **options)
         check_samplers(frame_plan, self.device.max_samplers)
-        return Shared(scene, frame_plan, settings)
+        return Shared(scene, frame_plan, settings, repeated, before)
+
+    def _was_drawn(self, scene: Scene) -> None:
+        """A picture of the scene is complete."""
+        self._drawn.update(shape for shape in scene.table.shapes if isinstance(shape, Surfels))
 
     def _frame(self, shared: Shared, camera: Camera, progress, part: Tile | None) -> Frame:
         """The picture of one sample."""
         scene, frame_plan, settings = shared.scene, shared.plan, shared.settings
         left, bottom, *size = part or (0, 0, *camera.size)
-        stats = self._new_stats(frame_plan)
+        stats = new_stats(self.device, frame_plan, self.streamed)
         started = perf_counter()
         try:
             tiles, identified = [], Identified(shared.identities, tuple(size), settings.outputs)
@@ -213,7 +229,7 @@ class Renderer:
             yield Shown((0, 0, *camera.size), self.device.texture((1, 1), "RGBA32F", pixel), (0, 0, 1, 1))
             return
         with _restored(self.device):
-            for drawn in self._slices(shared, camera, self._new_stats(frame_plan), None):
+            for drawn in self._slices(shared, camera, new_stats(self.device, frame_plan, self.streamed), None):
                 if isinstance(drawn, Pause):
                     if in_slices:
                         yield drawn
@@ -224,7 +240,7 @@ class Renderer:
                     texture_key(PIXELS["combined"], _drawn(tile, frame_plan)[2:], frame_plan)
                 )
                 yield Shown(tile, texture, (frame_plan.margin, frame_plan.margin, *tile[2:]))
-            was_drawn(scene)
+            self._was_drawn(scene)
 
     def add_sample(
         self, scene: Scene, moved: Camera, of: Viewers, settings: Settings, is_first: bool
@@ -242,10 +258,10 @@ class Renderer:
         with _restored(self.device):
             if is_first:
                 self.device.target([self._sum(moved.size)]).clear(color=0.0)
-            for drawn in self._slices(shared, moved, self._new_stats(frame_plan), None):
+            for drawn in self._slices(shared, moved, new_stats(self.device, frame_plan, self.streamed), None):
                 if isinstance(drawn, Pause) and len(frame_plan.tiles) == 1:
                     yield drawn
-            was_drawn(scene)
+            self._was_drawn(scene)
         return True
 
     def _refined(self, scene: Scene, moved: Camera, of: Viewers, settings: Settings) -> Shared:
@@ -278,27 +294,6 @@ class Renderer:
                 "set it to 0 and use supersampling."
             )
 
-    def _new_stats(self, frame_plan: FramePlan) -> dict:
-        return {
-            "backend": self.device.backend,
-            "device": self.device.renderer,
-            "plan": frame_plan,
-            "splats": 0,
-            "splats_drawn": 0,
-            "polygons": 0,
-            "instances": 0,
-            "instances_outside": 0,
-            "instances_degenerate": 0,
-            "instances_hidden": 0,
-            "surfels_coarse": 0,
-            "short_of_memory": self.streamed.short,
-            "unread": self.streamed.unread,
-            "layers": 0,
-            "culled": frame_plan.facts.get("culled", 0),
-            "culled_of": frame_plan.facts.get("culled_of", 0),
-            "passes": {},
-        }
-
     def _tiles(self, *of) -> Iterator[tuple[Tile, Target]]:
         """As `_slices`, without pauses."""
         return (drawn for drawn in self._slices(*of) if not isinstance(drawn, Pause))
@@ -308,42 +303,33 @@ class Renderer:
         scene, frame_plan, settings = shared.scene, shared.plan, shared.settings
         if not frame_plan.passes:
             return
-        sizes = {_drawn(tile, frame_plan)[2:] for tile in frame_plan.tiles}
-        self.resources.forget_textures_but(
-            {
-                texture_key(texture, size, frame_plan, name != texture.name)
-                for name, texture in frame_plan.filled.items()
-                for size in sizes
-            }
-        )
+        self.resources.forget_textures_but(shared.kept("textures", lambda: _textures(frame_plan)))
         self.resources.cuts.begin_frame()
-        self.resources.forget_atlases_but({kind.placed.looked_up for kind in scene.table.kinds})
+        self.resources.forget_atlases_but(scene.table.kinds.find(_looked_up))
         if self.resources.loading:
             TileContext(self.resources, frame_plan, scene, camera, settings, None, shared).check_arrived()
         whole = None
         if frame_plan.tiles != ((0, 0, *camera.size),):
             drawn = camera.cropped(*_drawn((0, 0, *camera.size), frame_plan))
-            whole = clip_range(scene.table, drawn, settings.epsilon, settings.epsilon_length)
+            whole = shared.whole(drawn)
         execution = Execution(*self._watching(settings, frame_plan, stats, progress))
         for number, tile in enumerate(frame_plan.tiles):
             stats["tile"] = number
             tile_camera = camera.cropped(*_drawn(tile, frame_plan))
-            view = build_view(scene.table, tile_camera, settings.epsilon, whole, epsilon_length=settings.epsilon_length)
-            context = TileContext(self.resources, frame_plan, scene, tile_camera, settings, view, shared, tile)
-            stats["splats"] += int(view.placed.table.counts.sum())
-            stats["polygons"] += int(view.polygons.table.triangles.sum())
-            stats["instances"] += len(view.placed) + len(view.polygons)
-            stats["instances_outside"] += view.outside
-            stats["instances_degenerate"] = view.degenerate
-            for p in context.with_cuts(view.placed):
+            view, repeats = shared.view(number, tile_camera, whole)
+            if not repeats.are_still(self.resources.textures):
+                repeats.forget()
+            about = self.resources, frame_plan, scene, tile_camera, settings, view, shared, tile
+            context = TileContext(*about, repeats=repeats)
+            context.bring_blocks()
+            for p in repeats.found("with cuts", partial(context.with_cuts, view.placed)):
                 context.drawn_count(p)  # chooses them
                 yield Pause()
-            stats["surfels_coarse"] = max(stats["surfels_coarse"], context.coarse(view.placed))
             target = yield from execution.run(frame_plan.steps, context)
             stats["layers"] = execution.turns
-            are_hidden = context.hidden[view.placed.table.numbers]
-            stats["instances_hidden"] += int(are_hidden.sum())
-            stats["splats_drawn"] += int(context.drawn_counts(view.placed)[~are_hidden].sum())
+            stats["instances_degenerate"] = view.degenerate
+            for name, count in repeats.found("counted", partial(counted, context)).items():
+                stats[name] = max(stats[name], count) if name == "surfels_coarse" else stats[name] + count
             yield tile, target
         del stats["tile"]
 
@@ -384,6 +370,20 @@ def _restored(device: Device) -> Iterator[None]:
 def _seen(camera: Camera) -> tuple:
     """What tells apart the cameras that shadow maps are fitted to."""
     return camera.matrix_world.tobytes(), camera.window, camera.size, camera.near, camera.far
+
+
+def _textures(frame_plan: FramePlan) -> set[TextureKey]:
+    """The keys of all textures that a plan's passes write."""
+    return {
+        texture_key(texture, size, frame_plan, name != texture.name)
+        for name, texture in frame_plan.filled.items()
+        for size in {_drawn(tile, frame_plan)[2:] for tile in frame_plan.tiles}
+    }
+
+
+def _looked_up(kinds: Kinds) -> set:
+    """The textures that instances of these kinds look up."""
+    return {kind.placed.looked_up for kind in kinds}
 
 
 def _share(progress: Progress, turn: int, count: int) -> Progress:

@@ -13,7 +13,8 @@ from splat_addon.reference.extremes import discs
 from splat_addon.reference.metrics import psnr
 from splat_addon.reference.triangles import render_triangles
 from splat_addon.rendering import Camera, Instance, Light, Material, Scene, Settings, look_at, plan
-from splat_addon.rendering.detail import levels
+from splat_addon.rendering.detail import hierarchies
+from splat_addon.rendering.detail.hierarchies import hierarchy_of
 from splat_addon.rendering.methods import METHODS
 from splat_addon.rendering.plan.executor import describe
 from splat_addon.rendering.upload.packing import pack_clip_lines
@@ -265,10 +266,10 @@ def test_lines_of_merged_surfels_follow_those_of_surfels():
 
 def test_clipped_surfels_may_have_a_hierarchy_without_nodes(monkeypatch, render):
     """Two discs far from each other do not merge."""
-    monkeypatch.setattr(levels, "LEAST_SURFELS", 1)
+    monkeypatch.setattr(hierarchies, "LEAST_SURFELS", 1)
     apart = [disc(clip_line=pack_lines(LINE), positions=np.array([[x, 0.0, -4]])) for x in (-0.6, 0.6)]
     surfels = concatenate([apart[0], replace(apart[1], materials=np.array([1]))])
-    assert len(levels.hierarchy_of(surfels)) == 0
+    assert len(hierarchy_of(surfels)) == 0
     scene = Scene((Instance(surfels, materials=(Material(), Material())),))
     some, every = (render(scene, STRAIGHT, replace(FLAT, detail_tolerance=t)) for t in (1, 0))
     assert "levels" in some.stats["plan"].facts and every.coverage.max() > 0.9

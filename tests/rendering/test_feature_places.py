@@ -22,7 +22,7 @@ FILES = {name: name_of(f) for f in FEATURES for name in (name_of(f), *getattr(f,
 
 #: feature -> ((reason, the files that name it), ...). No other file may name it.
 MEETINGS = {
-    "back_culling": (("a frame tells how many splats were left out", "renderer.py"),),
+    "back_culling": (("a frame tells how many splats were left out", "statistics.py"),),
     "blend_depth": (
         ("splats that blend so little tell joined sheets apart by their depths", "features/silhouettes.glsl"),
     ),

@@ -7,6 +7,7 @@ import pytest
 
 from splat_addon.rendering.plan.executor import Execution
 from splat_addon.rendering.plan.graph import Loop, Part, Pass, Texture, changed, each_pass, trimmed
+from splat_addon.rendering.plan.repeats import Repeats
 
 DEPTH = Texture("nearest", "DEPTH32F")
 SUM, COUNT, LEFT, PEELED, LAYERS, PICTURE = (
@@ -99,7 +100,7 @@ class Tile:
     def __init__(self, surfaces):
         self.surfaces, self.ran, self.swapped = surfaces, [], 0
         self.resources = SimpleNamespace(made_from={}, arrivals=0)
-        self.shared = SimpleNamespace(kept=lambda key, make: make())
+        self.shared, self.repeats = SimpleNamespace(kept=lambda key, make: make()), Repeats()
 
     def run(self, p):
         self.ran.append(p.name)

@@ -26,7 +26,7 @@ from splat_addon.rendering import (
 )
 from splat_addon.rendering.culling.cover import COVER_CELL, Cover
 from splat_addon.rendering.culling.hidden_blocks import BlocksFrontToBack
-from splat_addon.rendering.detail.levels import hierarchy_of
+from splat_addon.rendering.detail.hierarchies import hierarchy_of
 from splat_addon.rendering.features import hidden_objects, visibility
 from splat_addon.rendering.methods import METHODS
 from splat_addon.surfels import Surfels, concatenate

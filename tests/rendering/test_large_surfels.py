@@ -20,7 +20,7 @@ from splat_addon.rendering import (
     look_at,
     make_polygons,
 )
-from splat_addon.rendering.detail import levels
+from splat_addon.rendering.detail.hierarchies import hierarchy_of
 from splat_addon.sampling import DEFAULT_CREASE_ANGLE, Tolerance, TriangleMesh
 from tests.plain import sample_surface
 
@@ -94,7 +94,7 @@ def test_merged_large_surfels_leave_no_holes(render):
     """The hierarchy contains surfels of three sizes, which are seen from afar and at a slant."""
     scene = still_life(Tolerance(0.0))
     for instance in scene.surfels:
-        levels.hierarchy_of(instance.surfels)
+        hierarchy_of(instance.surfels)
     settings = replace(SETTINGS, detail_tolerance=0.7, outputs=("color", "coverage"), transparent_film=True)
     for distance in (12, 30, 80):
         eye = np.array((0.3, -0.8, 0.4)) * distance

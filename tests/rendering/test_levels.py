@@ -5,6 +5,7 @@ nothing.
 
 from dataclasses import replace
 from importlib import import_module
+from weakref import WeakSet
 
 import numpy as np
 import pytest
@@ -25,7 +26,8 @@ from splat_addon.rendering import (
     look_at,
     plan,
 )
-from splat_addon.rendering.detail.levels import LEAST_SURFELS, hierarchy_before, hierarchy_of, replaced, was_drawn
+from splat_addon.rendering.detail.hierarchies import LEAST_SURFELS, hierarchy_before, hierarchy_of, replaced
+from splat_addon.rendering.detail.history import history
 from splat_addon.rendering.methods import METHODS
 from splat_addon.rendering.plan import executor
 from splat_addon.rendering.upload.storages import STORAGES
@@ -359,13 +361,18 @@ def test_surfels_that_move_in_each_frame_are_merged_if_its_samples_pay_for_it(ha
     if has_hierarchy:
         built(scene)
     bent = next_frame(scene)
-    assert [plan(bent, camera, replace(SOME, samples=n)).has("LEVELS") for n in (1, 16)] == [False, True]
     near = replace(camera, window=tuple(edge / 20 for edge in camera.window))
-    assert not plan(bent, near, replace(SOME, samples=16)).has("LEVELS")
+
+    def are_merged(seen, in_all, **options):
+        settings = replace(SOME, samples=in_all)
+        return plan(bent, seen, settings, history=history(bent, WeakSet()), **options).has("LEVELS")
+
+    assert [are_merged(camera, n) for n in (1, 16)] == [False, True]
+    assert not are_merged(near, 16)
     # of 16 samples of an open shutter, one may be all that show this moment
-    assert not plan(bent, camera, replace(SOME, samples=16), samples=1).has("LEVELS")
+    assert not are_merged(camera, 16, samples=1)
     # three samples pay for fitting, and not for building
-    assert plan(bent, camera, replace(SOME, samples=3)).has("LEVELS") == has_hierarchy
+    assert are_merged(camera, 3) == has_hierarchy
 
 
 @pytest.mark.parametrize("may_change", [True, False])
@@ -376,7 +383,7 @@ def test_what_was_drawn_before_does_not_count_in_repeatable_pictures(may_change)
         return replace(scene, surfels=tuple(replace(each, may_change=may_change) for each in scene.surfels))
 
     def are_merged(scene):
-        return [plan(scene, camera, replace(SOME, samples=n), is_repeatable=True).has("LEVELS") for n in (1, 16)]
+        return [plan(scene, camera, replace(SOME, samples=n)).has("LEVELS") for n in (1, 16)]
 
     scene, camera = far_torus()
     near = replace(camera, window=tuple(edge / 20 for edge in camera.window))
@@ -384,9 +391,8 @@ def test_what_was_drawn_before_does_not_count_in_repeatable_pictures(may_change)
     assert are_merged(of(scene)) == expected
     built(scene)
     bent = next_frame(scene)
-    was_drawn(bent)
     assert are_merged(of(scene)) == are_merged(of(bent)) == expected
-    assert not plan(of(scene), near, SOME, is_repeatable=True).has("LEVELS")
+    assert not plan(of(scene), near, SOME).has("LEVELS")
     # planning changes nothing: another picture may still have fitted ones
     assert [hierarchy_before(instance.surfels) for instance in bent.surfels] == built(scene)
 
@@ -408,7 +414,8 @@ def test_surfels_that_have_come_to_rest_are_merged(on_device):
     camera = far_torus()[1]
 
     def draw(device):
-        return [Renderer(device).render(bent, camera, SOME).stats["splats_drawn"] for _ in range(2)]
+        renderer = Renderer(device)
+        return [renderer.render(bent, camera, SOME).stats["splats_drawn"] for _ in range(2)]
 
     first, second = on_device(draw)
     assert first == sum(len(i.surfels) for i in bent.surfels) and second < 0.3 * first

@@ -14,7 +14,7 @@ import pytest
 from splat_addon.reference import scenes
 from splat_addon.rendering import Arrival, Environment, Refinement, Renderer, Settings, look_at
 from splat_addon.rendering.detail import levels
-from splat_addon.rendering.detail.levels import built_hierarchy
+from splat_addon.rendering.detail.hierarchies import built_hierarchy
 from splat_addon.rendering.detail.stand_in import spread, stand_in
 from splat_addon.rendering.upload import loading, pools
 from splat_addon.rendering.upload.loading import Loading

@@ -8,7 +8,7 @@ import pytest
 
 from splat_addon.clip_lines import pack_lines
 from splat_addon.rendering import Camera, Instance, Light, Material, Renderer, Scene, Settings, look_at
-from splat_addon.rendering.detail.levels import hierarchy_of
+from splat_addon.rendering.detail.hierarchies import hierarchy_of
 from splat_addon.rendering.upload import parts
 from splat_addon.rendering.upload.packing import SPLATS_PER_ROW, TEXELS_PER_SPLAT
 from splat_addon.surfels import Surfels

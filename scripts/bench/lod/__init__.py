@@ -37,7 +37,7 @@ from measuring.timer_queries import has_timer_queries, timed_draws
 from measuring.timing import Spread, in_turn, wall
 from splat_addon.reference.metrics import mean_flip, psnr
 from splat_addon.rendering import Renderer, Settings, open_device, renderer
-from splat_addon.rendering.detail.levels import hierarchy_of
+from splat_addon.rendering.detail.hierarchies import hierarchy_of
 from splat_addon.rendering.plan import executor
 from splat_addon.sampling import PLAIN, sample_mesh
 

@@ -21,7 +21,7 @@ import bpy
 import numpy as np
 
 from ...rendering import Instance, Material, NormalTexture, PolygonInstance, Polygons, SurfaceTexture
-from ...rendering.detail.levels import replaced
+from ...rendering.detail.hierarchies import replaced
 from ...rendering.scene import Placed, placed_at
 from ...sampling import (
     STRETCHED_SHARE,

@@ -16,7 +16,7 @@ import numpy as np
 from ...faults import sentence_of
 from ...primaries import recolored
 from ...rendering import Instance, Light, Scene
-from ...rendering.detail.levels import replaced
+from ...rendering.detail.hierarchies import replaced
 from ...rendering.scene import placed_at
 from ...streaming import Stream
 from ...surfels import Surfels

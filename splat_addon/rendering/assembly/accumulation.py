@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -46,8 +47,13 @@ def sample_points(count: int, first: int = 0) -> np.ndarray:
 def pixel_offset(number: int, samples: int) -> np.ndarray:
     """(2,) float64, in pixels: the offset of a sample from the pixel's middle. The offsets of all `samples` of a
     picture have the mean 0."""
+    return _offsets(samples)[number]
+
+
+@lru_cache(1)
+def _offsets(samples: int) -> np.ndarray:
     points = sample_points(samples)[:, :2]
-    return points[number] - points.mean(axis=0)
+    return points - points.mean(axis=0)
 
 
 def _steps(number: np.ndarray) -> np.ndarray:
@@ -72,10 +78,9 @@ def sample_camera(camera: Camera, number: int, samples: int) -> Camera:
     Offsets are uniform over the pixel, so the mean of several has a box filter one pixel wide. Their own filters are
     narrower by that, so that a picture is as sharp whatever the number of its samples.
     """
-    ((_, _, *on_lens),) = sample_points(1, number)
     variance = _BOX_VARIANCE if samples > 1 else 0.0
     moved = replace(_moved(camera, *pixel_offset(number, samples)), sample=number, sample_variance=variance)
-    return _through(moved, camera.lens.points(np.array(on_lens))) if camera.lens else moved
+    return _through(moved, camera.lens.points(sample_points(1, number)[0, 2:])) if camera.lens else moved
 
 
 def around_samples(camera: Camera, samples: int) -> Camera:

@@ -7,21 +7,18 @@ of surfels first and then of merged nodes, in storage order.
 
 from __future__ import annotations
 
-from weakref import WeakKeyDictionary, WeakSet
-
 import numpy as np
 
-from ...hierarchy import Hierarchy, Sight, Split, Told, build_hierarchy, has_extremes, refit_hierarchy
+from ...hierarchy import Sight, Split
 from ...large_surfels import SAMPLE_SIZE
 from ...surfels import Surfels
 from ..scene import Instance, Scene
 from ..scene.camera import Camera
 from ..scene.table import InstanceTable
+from . import hierarchies
+from .history import History
 from .stand_in import STAND_INS
 from .steps import may_step
-
-#: For fewer surfels than this a cut saves less than it costs.
-LEAST_SURFELS = 4096
 
 #: A method's filter may show splats that are less than this many pixels outside the picture.
 _BESIDE = 8.0
@@ -38,74 +35,13 @@ _BUILDING, _REFITTING = 3.0, 2.5
 #: The share of surfels that a cut must spare a view at least.
 _LEAST_SPARED = 0.1
 
-#: The most by which errors of a refitted hierarchy may have grown, relative to the surfels; beyond, another is built.
-_WORN = 2.0
-
 #: Surfels of an instance from which a view's cut is estimated.
 _SOME = 256
-
-_BUILT: WeakKeyDictionary[Surfels, Hierarchy] = WeakKeyDictionary()
-#: The hierarchies of what sets were in the frame before; None if they had none.
-_BEFORE: WeakKeyDictionary[Surfels, Hierarchy | None] = WeakKeyDictionary()
-#: Sets that an earlier picture has drawn. What is drawn twice will be drawn often.
-_DRAWN: WeakSet[Surfels] = WeakSet()
-
-
-def hierarchy_of(surfels: Surfels) -> Hierarchy:
-    """The hierarchy of a set of surfels, made on first use and kept as long as the set."""
-    if surfels not in _BUILT:
-        keep_hierarchy(surfels, make_hierarchy(surfels, hierarchy_before(surfels)))
-    return _BUILT[surfels]
-
-
-def make_hierarchy(surfels: Surfels, before: Hierarchy | None, told: Told | None = None) -> Hierarchy:
-    """A hierarchy fitted from the one that the surfels had before they moved, or built if there is none or it fits
-    badly. told: as in `build_hierarchy`."""
-    if before is not None and not has_extremes(surfels):
-        fitted = refit_hierarchy(before, surfels)
-        if fitted.looseness(surfels) <= _WORN * fitted.built_looseness:
-            return fitted
-    return build_hierarchy(surfels, told)
-
-
-def built_hierarchy(surfels: Surfels) -> Hierarchy | None:
-    """Their hierarchy if it has been built."""
-    return _BUILT.get(surfels)
-
-
-def keep_hierarchy(surfels: Surfels, hierarchy: Hierarchy) -> None:
-    """Keep a hierarchy that was made elsewhere."""
-    _BUILT[surfels] = hierarchy
-    _BEFORE.pop(surfels, None)
-
-
-def hierarchy_before(surfels: Surfels) -> Hierarchy | None:
-    """The hierarchy that a set had in the frame before, which can be fitted to it."""
-    return _BEFORE.get(surfels)
-
-
-def replaced(before: Surfels, now: Surfels) -> None:
-    """The set of an object was replaced by another in a new frame. If that has as many surfels of the same materials,
-    they are taken to be the same ones, moved."""
-    if now is not before:
-        is_moved = len(before) == len(now) and np.array_equal(before.materials, now.materials)
-        _BEFORE[now] = _BUILT.get(before, _BEFORE.get(before)) if is_moved else None
-
-
-def forget_before(scene: Scene) -> None:
-    """Have the hierarchies of this frame built, not fitted from those of the frame before, which merge others."""
-    for shape in scene.table.shapes:
-        _BEFORE.pop(shape, None)
-
-
-def was_drawn(scene: Scene) -> None:
-    """A picture of the scene is complete."""
-    _DRAWN.update(shape for shape in scene.table.shapes if isinstance(shape, Surfels))
 
 
 def has_levels(instance: Instance) -> bool:
     """Whether an instance may be drawn as merged surfels: it needs many surfels, not merged already."""
-    return len(instance.surfels) >= LEAST_SURFELS and not _is_excluded(instance)
+    return len(instance.surfels) >= hierarchies.LEAST_SURFELS and not _is_excluded(instance)
 
 
 def _is_excluded(instance: Instance) -> bool:
@@ -117,25 +53,29 @@ def may_merge(instance: Instance, count: int) -> bool:
     many are drawn together."""
     if not may_step(instance, count):
         return has_levels(instance)
-    return count * len(instance.surfels) >= LEAST_SURFELS and not _is_excluded(instance)
+    return count * len(instance.surfels) >= hierarchies.LEAST_SURFELS and not _is_excluded(instance)
 
 
-def is_worth_preparing(instance: Instance) -> bool:
+def is_worth_preparing(instance: Instance, history: History) -> bool:
     """Whether a hierarchy is made for it where surfels are loaded in the background, whatever the view: not if its
     surfels have just replaced others, as in each frame of an animation."""
-    return has_levels(instance) and (instance.surfels in _DRAWN or instance.surfels not in _BEFORE)
+    return has_levels(instance) and _lasts(instance.surfels, history)
+
+
+def _lasts(surfels: Surfels, history: History) -> bool:
+    """Whether further pictures will show a set: it was drawn before, or may be drawn again."""
+    return surfels in history.drawn or surfels not in history.changed
 
 
 def merging(
-    scene: Scene, camera: Camera, tolerance: float, samples: int, is_repeatable: bool = False, widens: bool = False
+    scene: Scene, camera: Camera, tolerance: float, samples: int, history: History, widens: bool = False
 ) -> frozenset[Surfels]:
     """The sets of which instances are drawn as merged surfels: those whose hierarchy is there, or spares so many
     surfels in the samples of this scene, which may be one moment of a frame, that making it pays.
 
     Making it also pays for sets that further pictures will show: those that were drawn before, or may be drawn again,
-    unless an object's surfels are others in each frame. is_repeatable: what was drawn before does not count.
-    Shadow maps are not counted. widens: as of the method; its splats that are seen edge-on smear, and merged ones of
-    small sets much farther.
+    unless an object's surfels are others in each frame. Shadow maps are not counted.
+    widens: as of the method; its splats that are seen edge-on smear, and merged ones of small sets much farther.
     """
     found = []
     if not tolerance:
@@ -149,13 +89,9 @@ def merging(
     for shape in dict.fromkeys(table.shape_of.tolist()):
         surfels, instances = table.shapes[shape], table.taken(table.shape_of == shape)
         spared = _spared(surfels, instances, camera, tolerance)
-        if is_repeatable:
-            is_kept, work = not any(kind.placed.may_change for kind in instances.kinds), _BUILDING
-        else:
-            is_kept = surfels in _DRAWN or surfels not in _BEFORE
-            work = _BUILDING if _BEFORE.get(surfels) is None else _REFITTING
-        pays = spared.max() >= _LEAST_SPARED and (is_kept or samples * spared.sum() >= work)
-        if pays or (surfels in _BUILT and not is_repeatable):
+        work = _REFITTING if surfels in history.fitted else _BUILDING
+        pays = spared.max() >= _LEAST_SPARED and (_lasts(surfels, history) or samples * spared.sum() >= work)
+        if pays or surfels in history.built:
             found.append(surfels)
     return frozenset(found)
 

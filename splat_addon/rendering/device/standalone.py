@@ -144,7 +144,7 @@ class _Target:
         framebuffer.depth_mask = depth is not None
         if self._colors:
             framebuffer.color_mask = self._mask(color is not None)
-        value = np.broadcast_to(0.0 if color is None else color, 4).tolist()
+        value = tuple(color) if hasattr(color, "__len__") else (color or 0.0,) * 4
         framebuffer.clear(*value, depth=1.0 if depth is None else depth)
         if self._colors:
             framebuffer.color_mask = self._mask(True)

@@ -133,7 +133,7 @@ def _draw(tile, p, target, placed: DrawItem, program: Pipeline, which: range, vi
     blocks, textures = tile.blocks(program, placed, draw_block(tile, placed)), tile.textures(p, program, placed)
     for start in which[::AT_ONCE]:
         count = min(AT_ONCE, which.stop - start)
-        tile.resources.device.draw_triangles(program, target, count, blocks, textures, viewport, start)
+        tile.draw_triangles(program, target, count, blocks, textures, viewport, start)
         yield Pause(target)
 
 
@@ -144,7 +144,7 @@ def _draw_together(tile, p, target, batch: Items, program: Pipeline, which: rang
     for start in range(0, len(batch), at_once):
         triangles = min(at_once, len(batch) - start) * len(which)
         blocks = tile.blocks(program, placed, draw_block(tile, placed, start, which.start, len(which)))
-        tile.resources.device.draw_triangles(program, target, triangles, blocks, textures, viewport)
+        tile.draw_triangles(program, target, triangles, blocks, textures, viewport)
         yield Pause(target)
 
 

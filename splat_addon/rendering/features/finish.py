@@ -13,6 +13,7 @@ from functools import partial
 from ..plan.graph import Part, Texture
 from ..plan.planning import any_of
 from ..scene import Finish
+from ..scene.table import Kinds
 from ..shading_models.brdf_table import edge_texels
 from ..upload.packing import MAX_FINISHES, finish_matrix
 from . import gbuffer, lights, materials, outputs
@@ -35,13 +36,18 @@ _TABLES = {"specular_tint": "edge_table"}
 
 def found(planning) -> tuple[Finish, ...]:
     """The finishes that the frame tells apart, the most common first; none if all are plain."""
-    counted = Counter()
-    for placed, number in planning.scene.table.kinds:
-        for material in placed.materials:
-            counted[material.finish] += number
-    kept = tuple(finish for finish, _ in counted.most_common(MAX_FINISHES))
+    kept = tuple(finish for finish, _ in planning.scene.table.kinds.find(_counted).most_common(MAX_FINISHES))
     has_any = any(finish.layers for finish in kept)
     return kept if has_any and (len(kept) == 1 or _has_room(planning)) else ()
+
+
+def _counted(kinds: Kinds) -> Counter[Finish]:
+    """How many instances have each finish."""
+    counted = Counter()
+    for placed, number in kinds:
+        for material in placed.materials:
+            counted[material.finish] += number
+    return counted
 
 
 def _has_room(planning) -> bool:
@@ -62,7 +68,7 @@ def passes(planning):
     """No passes; records what the frame has."""
     planning.facts["finishes"] = kept = planning.find(found)
     planning.facts["summed_finishes"] = summed(planning)
-    every = {material.finish for kind in planning.scene.table.kinds for material in kind.placed.materials}
+    every = planning.scene.table.kinds.find(_counted)
     if not kept and any(finish.layers for finish in every):
         planning.skip("finishes", _NO_ROOM)
         return ()

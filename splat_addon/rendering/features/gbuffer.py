@@ -93,7 +93,7 @@ def _why(planning) -> str:
 def run(tile, p: Pass):
     """Fill the sums; textured instances use programs that look up colours."""
     target, vertex = tile.target(p), p.host.replace(".frag", ".vert")
-    target.clear(color=0.0, depth=1.0 if p.state["depth_write"] else None)
+    tile.clear(target, color=0.0, depth=1.0 if p.state["depth_write"] else None)
     drawn = tile.drawn_by(p)
     yield from draw_splats(tile, p, target, drawn.of_kinds(lambda i: not i.is_textured), vertex)
     yield from draw_splats(tile, p, target, drawn.of_kinds(lambda i: i.is_textured), vertex, "textured")

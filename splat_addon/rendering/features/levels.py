@@ -8,7 +8,7 @@ the same instance with different cuts.
 
 from __future__ import annotations
 
-from ..detail import levels
+from ..detail import hierarchies, levels
 from ..plan.graph import Part
 from ..plan.planning import count
 from ..upload.cuts import NUMBERS_PER_ROW
@@ -32,7 +32,7 @@ def merging(planning) -> frozenset:
         return frozenset()
     tolerance, method = planning.settings.detail_tolerance, planning.method
     seen = planning.scene, planning.camera, tolerance, planning.samples
-    return levels.merging(*seen, planning.is_repeatable, method.widens)
+    return levels.merging(*seen, planning.history, method.widens)
 
 
 def passes(planning):
@@ -47,7 +47,9 @@ def passes(planning):
             instances = count(lambda instance: instance.surfels in found, planning.surfels)
             planning.has("LEVELS", f"{instances} instances may have surfels too small to be seen one by one")
         else:
-            planning.skip("levels of detail", f"no instance of {levels.LEAST_SURFELS:,} surfels or more is worth it")
+            planning.skip(
+                "levels of detail", f"no instance of {hierarchies.LEAST_SURFELS:,} surfels or more is worth it"
+            )
     return ()
 
 

@@ -34,7 +34,7 @@ def fill_pixels(tile, p: Pass):
     if tile.seen_part(p, _BESIDE):
         pixels = background_texels(tile.scene, tile.settings)
         for texture in p.fills:
-            tile.resources.device.target([tile.texture(texture)]).clear(color=pixels[texture.name])
+            tile.clear(tile.resources.device.target([tile.texture(texture)]), color=pixels[texture.name])
     return fill_lit(tile, p)
 
 

@@ -78,12 +78,12 @@ def run(tile, p: Pass):
     texel of its place among those that are drawn."""
     target, lit = tile.target(p), tile.target(p.each)
     lights, programs = Programs(tile, p.each, "fullscreen.vert"), Programs(tile, p, p.host.replace(".frag", ".vert"))
-    target.clear(color=0.0, depth=1.0 if p.state["depth_write"] else None)
+    tile.clear(target, color=0.0, depth=1.0 if p.state["depth_write"] else None)
     for placed, cut in (part for each in tile.drawn_by(p) for part in tile.in_parts(each)):
         light = yield from lights.of(*(() if cut.numbers is None else ("cut",)))
         textures = tile.textures(p.each, light, placed)
         blocks = tile.blocks(light, placed, draw_block(tile, placed))
         viewport = 0, 0, SPLATS_PER_ROW, row_count(cut.count)
-        tile.resources.device.draw_triangles(light, lit, 1, blocks, textures, viewport)
+        tile.draw_triangles(light, lit, 1, blocks, textures, viewport)
         yield from draw_parts(tile, p, target, [(placed, cut)], programs)
     return target

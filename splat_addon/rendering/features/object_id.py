@@ -83,6 +83,6 @@ def parts(planning, p):
 def run_edges(tile, p: Pass):
     """Fill gaps that the visibility pass left in the numbers with the nearest splat footprint."""
     target = tile.target(p)
-    target.clear(depth=1.0)
+    tile.clear(target, depth=1.0)
     yield from draw_splats(tile, p, target, tile.drawn_by(p), p.host.replace(".frag", ".vert"))
     return target

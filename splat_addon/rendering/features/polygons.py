@@ -93,9 +93,9 @@ def _drawn(planning):
 def run(tile, p: Pass):
     """Fill the polygons' textures."""
     target = tile.target(p)
-    target.clear(color=0.0, depth=1.0)
+    tile.clear(target, color=0.0, depth=1.0)
     drawn = tile.view.polygons.of_kinds(lambda i: not i.is_holdout)
-    plain, textured = (drawn.of_kinds(lambda i, are=are: i.is_textured is are) for are in (False, True))
+    plain, textured = drawn.of_kinds(lambda i: not i.is_textured), drawn.of_kinds(lambda i: i.is_textured)
     yield from draw_polygons(tile, p, target, plain, "polygons.vert")
     yield from draw_polygons(tile, p, target, textured, "polygons.vert", "textured")
     return target

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from ..plan.graph import Part, Pass, Texture
 from ..plan.planning import any_of
+from ..plan.repeats import Repeats
 from ..scene.camera import Camera
 from ..scene.light import pack_lights
 from ..shadows.contents import contents
@@ -148,7 +149,7 @@ def run(tile, p: Pass):
             settings = replace(settings, detail_tolerance=COARSER * settings.detail_tolerance)
         from_light = replace(
             tile, plan=seen, camera=made.drawn, settings=settings, view=view, shown_blocks={},
-            is_depth_only=True,
+            is_depth_only=True, repeats=Repeats(),
         )  # fmt: skip
         drawn = p._replace(state={**p.state, "fragment_depth": is_linear, "sample_shading": False})
         yield from visibility.run_in(from_light, drawn, target, made.viewport)

@@ -7,7 +7,7 @@ from collections.abc import Generator
 from dataclasses import replace
 
 from ..plan.graph import Part, Pass, Pause, Texture
-from ..view import Items, View
+from ..view import Items
 from . import depth_format, hidden_objects, silhouettes
 from .drawing import draw_polygons, draw_splats, storage_samplers
 
@@ -64,10 +64,11 @@ def parts(planning, p):
 def run(tile, p: Pass):
     """Fill the depth texture and the other textures about the nearest surface."""
     target = tile.target(p)
-    target.clear(color=0.0 if p.colors else None, depth=1.0)
+    tile.clear(target, color=0.0 if p.colors else None, depth=1.0)
     by_rows = tile
     if silhouettes.rows_of(p.depth) > 1:
-        by_rows = replace(tile, view=_seen_by_rows(tile.view, target.size[1]))
+        # the first of a sample's rows goes through its centre
+        by_rows = replace(tile, rise=-(silhouettes.VISIBILITY_ROWS - 1) / target.size[1])
     polygons = tile.view.polygons if p.kind != "layer" else None
     for splats in hidden_objects.front_to_back(tile, p, tile.drawn_by(p)):
         yield from draw(by_rows, p, target, splats, polygons)
@@ -88,10 +89,3 @@ def draw(tile, p: Pass, target, splats: Items, polygons: Items | None, viewport=
     if polygons:
         yield from draw_polygons(tile, p, target, polygons, "polygon_visibility.vert", "polygons", viewport=viewport)
     yield from draw_splats(tile, p, target, splats, "visibility.vert", "splats", viewport=viewport)
-
-
-def _seen_by_rows(view: View, rows: int) -> View:
-    """A view shifted in the picture, so that the first of a sample's rows goes through its centre."""
-    projection = view.projection.copy()
-    projection[1] -= projection[3] * (silhouettes.VISIBILITY_ROWS - 1) / rows
-    return replace(view, projection=projection)

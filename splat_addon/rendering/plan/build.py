@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
+from ..detail.history import History, no_history
 from ..features import CHECKS, MARGINS, PARTS, PASSES, READ_BACK, depth_format, lit_splats
 from ..scene import Scene
 from ..scene.camera import Camera
@@ -29,7 +30,7 @@ def plan(
     is_added_up: bool = False,
     part: tuple[int, int, int, int] | None = None,
     samples: int | None = None,
-    is_repeatable: bool = False,
+    history: History | None = None,
     around: Camera | None = None,
 ) -> FramePlan:
     """The passes that this picture needs.
@@ -38,10 +39,10 @@ def plan(
     is_added_up: whether the picture is one sample of a refining view.
     part: x, y, width, height in pixels, if only a part of the picture is drawn.
     samples: number of samples that show this scene, if fewer than the picture's.
-    is_repeatable: whether the picture is the same whatever was drawn before it.
+    history: what earlier pictures have left behind; None for a picture that is the same whatever was drawn before it.
     around: a camera that sees all that the cameras of several samples see, if the plan is for all of them.
     """
-    about = is_added_up, samples or settings.samples, is_repeatable, around or camera
+    about = is_added_up, samples or settings.samples, history or no_history(scene), around or camera
     planning = Planning(scene, camera, settings, viewers or Viewers(camera, (camera,)), *about)
     if settings.multisampling and planning.method.rasterizer != "object_space":
         raise ValueError(

@@ -20,6 +20,7 @@ from ..features import ARRIVES, DRAWN, DRAWS, INPUTS, VALUES
 from ..methods import get_method
 from ..scene import Instance, Placed, Scene
 from ..scene.camera import Camera
+from ..scene.table import Kinds
 from ..settings import Settings
 from ..upload.cuts import Cut, whole_set
 from ..upload.loading import NotYet
@@ -33,6 +34,7 @@ from .batches import batches, instance_texels, pooled_batches
 from .frame_plan import FramePlan
 from .graph import Loop, Pass, Pause, Step, Texture, of_pixels
 from .programs import describe
+from .repeats import Repeats
 from .shared import Shared
 from .uniforms import DRAW, INSTANCE, VIEW, Block, instance_values, std140
 
@@ -53,6 +55,7 @@ class TileContext:
     shown_blocks: of objects with levels, the blocks that passes draw from now on: those of the cut, until some of
         them are found to be hidden.
     is_depth_only: the depth of opaque surfels is all that is seen, as in a shadow map.
+    repeats: what it shares with other samples. rise: how far the picture is moved up, in clip space.
     """
 
     resources: Resources
@@ -65,6 +68,8 @@ class TileContext:
     rectangle: tuple[int, int, int, int] = (0, 0, 0, 0)
     shown_blocks: dict[Instance, np.ndarray] = field(default_factory=dict)
     is_depth_only: bool = False
+    repeats: Repeats = field(default_factory=Repeats)
+    rise: float = 0.0
 
     def key(self, texture: Texture, is_next: bool = False) -> TextureKey:
         """The key of a texture of the plan; is_next: the second one of a texture that is updated."""
@@ -72,7 +77,8 @@ class TileContext:
 
     def texture(self, texture: Texture, is_next: bool = False) -> DeviceTexture:
         """A texture of the plan; is_next: as in `key`."""
-        return self.resources.texture(self.key(texture, is_next))
+        key = self.key(texture, is_next)
+        return self.repeats.uses(key, self.resources.texture(key))
 
     def swap(self, texture: Texture) -> None:
         """Swap the two textures of one that was updated."""
@@ -83,6 +89,14 @@ class TileContext:
         depth, updated = p.depth if p.state.get("depth_test") else None, p.all("updates")
         colors = [self.texture(texture, texture in updated) for texture in p.colors]
         return self.resources.device.target(colors, depth and self.texture(depth))
+
+    def clear(self, target: Target, color=None, depth: float | None = None) -> None:
+        """Clear a target, as its method does."""
+        self.repeats.call(target.clear, color, depth)
+
+    def draw_triangles(self, *call) -> None:
+        """Draw, as the method of the device does."""
+        self.repeats.call(self.resources.device.draw_triangles, *call)
 
     def drawn_by(self, p: Pass) -> Items:
         """The splats of the tile's view that a pass draws, except what was found to be hidden."""
@@ -154,13 +168,7 @@ class TileContext:
 
     def _values_of(self, items: Items) -> np.ndarray:
         """The values of the block of each of the items; kept, because they are asked for one by one."""
-        if self._values[0] is not items:
-            self._values[:] = items, instance_values(items)
-        return self._values[1]
-
-    @cached_property
-    def _values(self) -> list:
-        return [None, None]
+        return self.repeats.found((items, "values"), lambda: instance_values(items))
 
     def instance_table(self, items: Items) -> DeviceTexture:
         """The texture of the values of many instances."""
@@ -168,18 +176,15 @@ class TileContext:
 
     def batches(self, items: Items) -> list[Items]:
         """The items in groups that are drawn together, except those of a pool."""
-        if items not in self._batches:
-            alone = items
-            if pooled := self.pool(items):
-                alone = items.of_kinds(lambda placed: id(placed) not in pooled.rows)
-            # a cut is its instance's own
-            are_whole = alone.table.of_kinds(lambda placed: self.levels(placed) is None)
-            self._batches[items] = batches(alone, alone.table.triangles * are_whole, self.steps_of(alone))
-        return self._batches[items]
+        return self.repeats.found((items, "batches"), lambda: self._made_batches(items))
 
-    @cached_property
-    def _batches(self) -> dict[Items, list[Items]]:
-        return {}
+    def _made_batches(self, items: Items) -> list[Items]:
+        alone = items
+        if pooled := self.pool(items):
+            alone = items.of_kinds(lambda placed: id(placed) not in pooled.rows)
+        # a cut is its instance's own
+        are_whole = alone.table.of_kinds(lambda placed: self.levels(placed) is None)
+        return batches(alone, alone.table.triangles * are_whole, self.steps_of(alone))
 
     def pool(self, items: Items) -> Pool | None:
         """The pool that items of different kinds are drawn from, if there is one."""
@@ -194,30 +199,28 @@ class TileContext:
 
     def _pooled(self, kind: type) -> list[Placed]:
         """One instance of each kind in the pool of surfels or of polygons: small ones of which there are few."""
-        kinds = [k for k in self.scene.table.kinds if isinstance(k.placed, kind) and k.count < detail.LEAST_TOGETHER]
-        kinds = [k for k in kinds if may_share(k.placed) and k.placed.shape not in self.plan.facts.get("levels", ())]
-        ends = np.cumsum([len(k.placed.shape) for k in kinds])
-        kinds = kinds[: int(np.searchsorted(ends, MOST_POOLED, "right"))]
-        return [k.placed for k in kinds] if sum(k.count for k in kinds) >= detail.LEAST_TOGETHER else []
+        kinds, levels = self.scene.table.kinds.of(kind), self.plan.facts.get("levels", ())
+        numbers, triangles = kinds.find(_numbers_and_triangles)
+        may = np.array(kinds.holds(may_share), bool) & (numbers < detail.LEAST_TOGETHER)
+        rows = np.flatnonzero(may & ~np.array([k.placed.shape in levels for k in kinds] if levels else False))
+        rows = rows[: int(np.searchsorted(np.cumsum(triangles[rows]), MOST_POOLED, "right"))]
+        return [kinds[k].placed for k in rows.tolist()] if numbers[rows].sum() >= detail.LEAST_TOGETHER else []
 
     def pooled_batches(self, items: Items) -> list[tuple[Items, tuple[str, ...], int]]:
         """What is drawn from the pool: groups, with the variants of their programs and the triangles of each item."""
-        if items not in self._pooled_batches:
-            self._pooled_batches[items] = list(self._found_in_pool(items))
-        return self._pooled_batches[items]
+        return self.repeats.found((items, "pooled"), lambda: list(self._found_in_pool(items)))
 
     def _found_in_pool(self, items: Items):
         if (pool := self.pool(items)) is None:
             return
-        own = items.of_kinds(lambda placed: id(placed) in pool.rows)
-        kinds = np.array([pool.rows.get(id(placed), -1) for placed in own.table.every_kind], int)[own.table.kind_of]
+        every = items.table.every_kind
+        # of the same tuple all items of a view are, and of one more its casters
+        key, make = ("pool rows", id(every)), lambda: np.array([pool.rows.get(id(placed), -1) for placed in every], int)
+        kinds = self.shared.kept(key, lambda: (make(), every))[0][items.table.kind_of]
+        own, kinds = items.taken(kinds >= 0), kinds[kinds >= 0]
         first, clipped, counts = (array[kinds] for array in (pool.first, pool.clipped, pool.counts))
         for more, start, size in (((), first + clipped, counts - clipped), (("clipped",), first, clipped)):
             yield from ((batch, more, most) for batch, most in pooled_batches(own, start, size))
-
-    @cached_property
-    def _pooled_batches(self) -> dict[Items, list]:
-        return {}
 
     def coarse(self, items: Items) -> int:
         """The number of surfels that the storage makes visibly less precise."""
@@ -225,23 +228,30 @@ class TileContext:
         alone = [kind for kind in items.table.kinds if not pool or id(kind.placed) not in pool.rows]
         return sum(kind.count * self.stored(kind.placed).coarse for kind in alone) + (pool.coarse if pool else 0)
 
-    @cached_property
-    def _blocks(self) -> dict[Block, np.ndarray]:
-        return {}
-
     def _block(self, block: Block) -> np.ndarray:
-        if block not in self._blocks:
-            values = self._view_values if block is VIEW else [VALUES[name][1](self) for _, name in block[2]]
-            self._blocks[block] = std140(block, values)
-        return self._blocks[block]
+        key = self.rise, block
+        if key not in self.repeats.blocks:
+            self.repeats.blocks[key] = self._values_in(block)
+        return self.repeats.blocks[key]
+
+    def _values_in(self, block: Block) -> np.ndarray:
+        return std140(block, self._view_values if block is VIEW else [VALUES[name][1](self) for _, name in block[2]])
+
+    def bring_blocks(self) -> None:
+        """Give the blocks that other samples made the values of this one."""
+        for (rise, block), values in self.repeats.blocks.items():
+            values[:] = (replace(self, rise=rise) if rise else self)._values_in(block)
 
     @property
     def _view_values(self):
         to_world = np.eye(4)
         to_world[:3, :3] = self.camera.matrix_world[:3, :3]
         view, is_parallel = self.view, self.camera.is_orthographic
-        lengths = self.depth_unit, 1.0 / view.scale
-        return view.projection, to_world, self.window, view.near, is_parallel, *lengths, self.plan.filter_variance
+        projection, lengths = view.projection, (self.depth_unit, 1.0 / view.scale)
+        if self.rise:
+            projection = projection.copy()
+            projection[1] += projection[3] * self.rise
+        return projection, to_world, self.window, view.near, is_parallel, *lengths, self.plan.filter_variance
 
     def levels(self, instance: Placed) -> Hierarchy | None:
         """The hierarchy of an object's surfels, if the plan has levels of detail for it and it is there."""
@@ -251,7 +261,7 @@ class TileContext:
 
     def stored(self, instance: Instance) -> StoredSurfels:
         """An object's surfels on the device, including merged ones if it has levels."""
-        may_have_levels = bool(self.settings.detail_tolerance) and is_worth_preparing(instance)
+        may_have_levels = bool(self.settings.detail_tolerance) and is_worth_preparing(instance, self.shared.history)
         storage, levels = get_storage(self.plan.storage), self.levels(instance)
         return self.resources.surfels(instance.surfels, storage, levels, may_have_levels)
 
@@ -337,9 +347,9 @@ class TileContext:
             self._cuts[instance] = rows, self._cut(instance, levels, rows)
         return self._cuts[instance][1]
 
-    @cached_property
+    @property
     def _cuts(self) -> dict[Instance, tuple[np.ndarray, tuple[Cut, ...]]]:
-        return {}
+        return self.repeats.found("cuts", dict)
 
     def _cut(self, instance: Instance, levels: Hierarchy, rows: np.ndarray) -> tuple[Cut, ...]:
         """The cut that consists of some blocks."""
@@ -405,11 +415,18 @@ class TileContext:
         """Draw over everything that a pass writes, or a part: x, y, width, height of the target."""
         target, program = self.target(p), self.program(p)
         if p.depth and p.state.get("depth_write"):
-            target.clear(depth=1.0)
+            self.clear(target, depth=1.0)
         if viewport is None or min(viewport[2:]) > 0:
             blocks, textures = self.blocks(program), self.textures(p, program)
-            self.resources.device.draw_fullscreen(program, target, blocks, textures, viewport=viewport)
+            self.repeats.call(self.resources.device.draw_fullscreen, program, target, blocks, textures, viewport)
         return target
+
+
+def _numbers_and_triangles(kinds: Kinds) -> tuple[np.ndarray, np.ndarray]:
+    """(k,) of each kind its instances, and the triangles of one."""
+    corners = [1 if isinstance(placed, Instance) else 3 for placed, _ in kinds]
+    sizes = np.array([len(placed.shape) for placed, _ in kinds], int)
+    return np.array([count for _, count in kinds], int), sizes // np.array(corners, int)
 
 
 def _stored(entries: np.ndarray | None, places: np.ndarray) -> np.ndarray | None:
@@ -462,9 +479,17 @@ class Execution:
 
     def _drawn(self, p: Pass, tile: TileContext) -> Generator[Pause, None, Target | None]:
         self._told(p, self._number - 1)
-        target = run_pass(tile, p)
-        if isinstance(target, Generator):
-            target = yield from target
+        if known := tile.repeats.of(p):
+            for call in known.calls:
+                call()
+            target = known.target
+        else:
+            if p.once is None:
+                tile.repeats.begin()
+            target = run_pass(tile, p)
+            if isinstance(target, Generator):
+                target = yield from target
+            tile.repeats.end(p, target)
         self._done(p, target)
         for texture in p.all("updates"):
             tile.swap(texture)

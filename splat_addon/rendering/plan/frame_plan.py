@@ -61,6 +61,13 @@ class FramePlan:
         return sum(len(s.body) * s.times + len(s.last) if isinstance(s, Loop) else 1 for s in self.steps)
 
     @cached_property
+    def may_repeat(self) -> bool:
+        """Whether the same calls draw all samples from one place: nothing is read while passes run, and no textures
+        are swapped."""
+        are_passes = not any(isinstance(step, Loop) for step in self.steps)
+        return are_passes and not any(p.all("updates") or (p.each and p.once is None) for p in self.steps)
+
+    @cached_property
     def filled(self) -> dict[str, Texture]:
         """Every texture that some pass writes, by name; for updated textures also the second one."""
         found = {}

@@ -3,13 +3,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from typing import TypeVar
 
+from ..detail.history import History
 from ..methods import get_method
 from ..scene import Instance, Placed, PolygonInstance, Scene
 from ..scene.camera import Camera
-from ..scene.table import Kind
+from ..scene.table import Kinds
 from ..settings import Settings
 from ..shading_models import get_shading_model
 from ..shadows.receivers import Viewers
@@ -19,8 +20,8 @@ Found = TypeVar("Found")
 
 class Planning:
     """viewers: the cameras that shadow maps serve. is_added_up: whether the picture is a sample of a refining view.
-    samples: number of samples that show the scene. is_repeatable: whether the picture is the same whatever was drawn
-        before. around: sees all that any sample sees.
+    samples: number of samples that show the scene. history: what earlier pictures have left behind.
+    around: sees all that any sample sees.
 
     shown: everything visible. surfels, polygons: the kinds of it.
     facts: as in `FramePlan`; features add to them.
@@ -34,17 +35,15 @@ class Planning:
         viewers: Viewers,
         is_added_up: bool,
         samples: int,
-        is_repeatable: bool,
+        history: History,
         around: Camera,
     ):
         self.scene, self.camera, self.settings = scene, camera, settings
         self.viewers, self.is_added_up, self.samples = viewers, is_added_up, samples
-        self.is_repeatable, self.around = is_repeatable, around
+        self.history, self.around = history, around
         self.method, self.model = get_method(settings.method), get_shading_model(settings.shading)
         self.shown = scene.shown
-        kinds = scene.table.kinds
-        self.surfels = tuple(kind for kind in kinds if isinstance(kind.placed, Instance))
-        self.polygons = tuple(kind for kind in kinds if isinstance(kind.placed, PolygonInstance))
+        self.surfels, self.polygons = (scene.table.kinds.of(kind) for kind in (Instance, PolygonInstance))
         self.features: list[tuple[str, str]] = []
         self.skipped: list[tuple[str, str]] = []
         self.facts: dict[str, object] = {}
@@ -65,14 +64,14 @@ class Planning:
         self.skipped.append((what, why))
 
 
-def count(which: Callable[[Placed], bool], kinds: Iterable[Kind]) -> int:
+def count(which: Callable[[Placed], bool], kinds: Kinds) -> int:
     """The number of instances of these kinds for which this holds."""
-    return sum(kind.count for kind in kinds if which(kind.placed))
+    return sum(kind.count for kind, is_one in zip(kinds, kinds.holds(which), strict=True) if is_one)
 
 
-def any_of(which: Callable[[Placed], bool], kinds: Iterable[Kind]) -> bool:
+def any_of(which: Callable[[Placed], bool], kinds: Kinds) -> bool:
     """Whether this holds for any instance of these kinds."""
-    return any(which(kind.placed) for kind in kinds)
+    return any(kinds.holds(which))
 
 
 def counted(

@@ -8,16 +8,19 @@ from collections.abc import Callable, Hashable
 from functools import cached_property
 from typing import TypeVar
 
-from ..depth_range import clip_range
+from ..depth_range import ClipRange, clip_range
+from ..detail.history import NOTHING, History
 from ..device.interface import Pipeline, Texture, texture_bytes
 from ..identity import Identities
+from ..sample_views import SampleViews, clip_around
 from ..scene import Instance, Scene
 from ..scene.camera import Camera
 from ..settings import Settings
-from ..shadows.maps import ShadowMap, brought_down
+from ..shadows.maps import ShadowMap
 from ..view import View, build_view
 from .frame_plan import FramePlan
 from .graph import Pass
+from .repeats import Repeats
 
 Made = TypeVar("Made")
 
@@ -26,10 +29,11 @@ _MOST_BYTES = 1 << 26
 
 
 class Shared:
-    """A scene, the plan of its picture, and what depends on nothing else."""
+    """A scene, the plan of its picture, and what depends on nothing else. samples: of the picture that are drawn one
+    right after the other. history: as of `plan`."""
 
-    def __init__(self, scene: Scene, plan: FramePlan, settings: Settings):
-        self.scene, self.plan, self.settings = scene, plan, settings
+    def __init__(self, scene: Scene, plan: FramePlan, settings: Settings, samples: int = 1, history: History = NOTHING):
+        self.scene, self.plan, self.settings, self.samples, self.history = scene, plan, settings, samples, history
         self._kept: dict[Hashable, object] = {}
         self._tables: dict[tuple[bytes, bytes], Texture] = {}
         self._programs: dict[tuple, tuple[Pass, Pipeline]] = {}
@@ -51,6 +55,34 @@ class Shared:
             self._tables[key] = made
         return self._tables[key]
 
+    @cached_property
+    def _are_alike(self) -> bool:
+        """Whether samples have one view; of far-reaching triangles each shows other pieces."""
+        return self.samples > 1 and not len(self.scene.table.firm.reaching)
+
+    def whole(self, camera: Camera) -> ClipRange:
+        """The clip range of a picture that is drawn in tiles. camera: of all of it."""
+        if not self._are_alike:
+            return clip_range(self.scene.table, camera, *self._epsilons)
+        key = "whole", camera.matrix_world.tobytes()
+        return self.kept(key, lambda: clip_around(self.scene.table, camera, *self._epsilons))
+
+    @property
+    def _epsilons(self) -> tuple[float, float]:
+        return self.settings.epsilon, self.settings.epsilon_length
+
+    def view(self, tile: int, camera: Camera, whole: ClipRange | None) -> tuple[View, Repeats]:
+        """The scene as the camera of a tile and sample sees it, and what it shares with other samples of the tile.
+
+        whole: as of `build_view`.
+        """
+        table, place, (epsilon, length) = self.scene.table, (tile, camera.matrix_world.tobytes()), self._epsilons
+        if not self._are_alike:
+            return build_view(table, camera, epsilon, whole, epsilon_length=length), Repeats()
+        view = self.kept(("views", place), lambda: SampleViews(table, camera, whole, epsilon, length)).of(camera)
+        may_repeat = self.plan.may_repeat and len(self.plan.tiles) == 1
+        return view, self.kept(("repeats", place), lambda: Repeats(True)) if may_repeat else Repeats()
+
     def program(self, p: Pass, names: tuple, make: Callable[[], Pipeline]) -> Pipeline:
         """The program of a pass with these names of its vertex shader and variants."""
         known = self._programs.get((id(p), names))
@@ -68,7 +100,7 @@ class Shared:
         lookups depend on it."""
         epsilon, whole = self.settings.epsilon, None
         if made.camera.is_orthographic:
-            whole = clip_range(brought_down(self.scene.table.casting, made.camera), made.camera, epsilon)
+            whole = clip_range(made.around, made.camera, epsilon)
         return build_view(made.casters, made.drawn, epsilon, whole, are_split=False)
 
     @cached_property

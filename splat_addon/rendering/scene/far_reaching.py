@@ -7,7 +7,7 @@ pieces that are no larger than a few times their own distance, in float64, relat
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
@@ -86,10 +86,10 @@ def seen_places_in(
     return places, places @ rotation.T + camera.matrix_world[:3, 3]
 
 
-def pressed_above(instance: PolygonInstance, camera: Camera, depth: float) -> Polygons | None:
-    """What a parallel camera would see if it stood farther back, pressed to one depth, in its view space; None for
-    nothing."""
-    triangles = _in_view(instance, camera)
+def pressed_above(instances: Iterable[PolygonInstance], camera: Camera, depth: float) -> Polygons | None:
+    """What a parallel camera would see of these if it stood farther back, pressed to one depth, in its view space; None
+    for nothing."""
+    triangles = np.concatenate([np.zeros((0, 3, 3)), *(_in_view(instance, camera) for instance in instances)])
     left, right, bottom, top = camera.window
     for x, y, z, at in (
         (0, 0, 1, camera.near),

@@ -22,6 +22,8 @@ MAX_INDEX = (1 << 31) - 1
 def check_range(what: str, value, least: float, most: float, is_whole: bool = False) -> None:
     """Raise ValueError with a sentence unless all numbers of a value lie between these. what: the sentence's
     subject."""
+    if type(value) in (int, float) and least <= value <= most and (not is_whole or value % 1 == 0):
+        return
     numbers = np.asarray(value, np.float64)
     if not ((numbers >= least) & (numbers <= most)).all() or (is_whole and (numbers % 1).any()):
         shown = numbers.tolist() if numbers.ndim < 2 else "an array with others"

@@ -8,13 +8,16 @@ where they are split. What does not depend on that is decided once for each kind
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from types import FunctionType
+from typing import TYPE_CHECKING, NamedTuple, TypeVar
 
 import numpy as np
 
 from ...surfels import Surfels
+
+Found = TypeVar("Found")
 
 if TYPE_CHECKING:
     from .camera import Camera
@@ -43,6 +46,35 @@ class Kind(NamedTuple):
     count: int
 
 
+class Kinds(tuple[Kind, ...]):
+    """Kinds of instances, and what was found of them."""
+
+    def holds(self, which: Callable[[Placed], bool]) -> list[bool]:
+        """Whether something holds for each of them. It is found once, if the function depends on nothing else."""
+        if not depends_on_nothing_else(which):
+            return [which(kind.placed) for kind in self]
+        return self._kept(which.__code__, lambda: [which(kind.placed) for kind in self])
+
+    def of(self, kind: type) -> Kinds:
+        """Those that are of a class; the same object each time."""
+        return self._kept(kind, lambda: Kinds(one for one in self if isinstance(one.placed, kind)))
+
+    def find(self, fact: Callable[[Kinds], Found]) -> Found:
+        """fact(self), found once."""
+        return self._kept(fact, lambda: fact(self))
+
+    def _kept(self, key, make: Callable[[], Found]) -> Found:
+        known = self.__dict__.setdefault("known", {})
+        if key not in known:
+            known[key] = make()
+        return known[key]
+
+
+def depends_on_nothing_else(which: Callable) -> bool:
+    """Whether the result of a function is always the same for an instance."""
+    return isinstance(which, FunctionType) and which.__closure__ is None and which.__defaults__ is None
+
+
 class FromEye(NamedTuple):
     """What a camera of some place sees of n instances, whichever window it looks through.
 
@@ -69,7 +101,7 @@ class InstanceTable:
     `split_distance` and `split_length`, NaN for none. slots: (n, 2) the number of the first material slot, and how many
     more there are; 0 for holdouts. origins, low, high: (s, 3) of each shape, the last two relative to the first.
     sizes: (s, 3) of each shape: how many surfels or corners it has, and how far these extend at most, without large
-    surfels in the last column; 0 for polygons.
+    surfels in the last column; 0 for polygons. known: what was found of every kind, and of every shape.
     """
 
     placed: Sequence[Placed]
@@ -86,6 +118,7 @@ class InstanceTable:
     low: np.ndarray
     high: np.ndarray
     sizes: np.ndarray
+    known: dict = field(default_factory=dict)
 
     def __len__(self) -> int:
         return len(self.numbers)
@@ -105,16 +138,18 @@ class InstanceTable:
         return made
 
     @cached_property
-    def kinds(self) -> tuple[Kind, ...]:
+    def kinds(self) -> Kinds:
         """Those that are there, in the order of their first instances."""
         found, first, counts = np.unique(self.kind_of, return_index=True, return_counts=True)
         order = np.argsort(first)
-        return tuple(Kind(self.every_kind[found[k]], int(counts[k])) for k in order.tolist())
+        return Kinds(Kind(self.every_kind[found[k]], int(counts[k])) for k in order.tolist())
 
     def of_kinds(self, which: Callable[[Placed], bool]) -> np.ndarray:
         """(n,) bool: whether the instances are of a kind for which this holds."""
-        if len(self.every_kind) == 1:
-            return np.full(len(self), which(self.every_kind[0]))
+        if depends_on_nothing_else(which):
+            if which.__code__ not in self.known:
+                self.known[which.__code__] = np.array([bool(which(one)) for one in self.every_kind], bool)
+            return self.known[which.__code__][self.kind_of]
         chosen = np.zeros(len(self.every_kind), bool)
         for kind in self._present:
             chosen[kind] = which(self.every_kind[kind])
@@ -132,8 +167,9 @@ class InstanceTable:
     @cached_property
     def triangles(self) -> np.ndarray:
         """(n,) int: triangles that are drawn of each, one for a surfel."""
-        are_surfels = np.array([isinstance(shape, Surfels) for shape in self.shapes], bool)
-        return self.counts // np.where(are_surfels, 1, 3)[self.shape_of]
+        if "corners" not in self.known:
+            self.known["corners"] = np.array([1 if isinstance(shape, Surfels) else 3 for shape in self.shapes], int)
+        return self.counts // self.known["corners"][self.shape_of]
 
     @cached_property
     def radii(self) -> np.ndarray:

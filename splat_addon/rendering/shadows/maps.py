@@ -17,6 +17,7 @@ from ..scene import Placed, PolygonInstance, Scene
 from ..scene.camera import Camera, look_at
 from ..scene.far_reaching import highest_over, pressed_above
 from ..scene.light import MAX_SUN_HALF_ANGLE, Light
+from ..scene.numbers import MAX_LENGTH
 from ..scene.table import InstanceTable, with_others
 from ..view import View
 from .casters import in_the_way
@@ -63,7 +64,7 @@ class ShadowMap:
     is_face: whether it is one face of a cube around a light, and continues in the adjacent faces.
     is_smaller: whether it has fewer texels than the settings say, because these are far smaller than pixels.
     used: x, y, width and height of the part that is drawn, which holds all that the picture looks up.
-    casters: the instances that may block the light on its way to what is seen.
+    casters: the instances that may block the light on its way to what is seen. around: all instances that cast shadows.
     """
 
     light: int
@@ -73,6 +74,7 @@ class ShadowMap:
     is_smaller: bool
     used: tuple[int, int, int, int]
     casters: InstanceTable
+    around: InstanceTable
 
     @property
     def drawn(self) -> Camera:
@@ -135,15 +137,16 @@ def _needed(
     while 2 * side <= most and are_larger_than_pixels(side, needed):
         side *= 2
     found = []
+    cameras = [resized(camera, side) for camera in cameras]
     if light.kind == "sun":
         casters = brought_down(casters, cameras[0])
-    for camera in (resized(c, side) for c in cameras):
+    for camera in cameras:
         spread = spread_of(light, camera)
         if one := together([looked_up(camera, one, spread) for one in seen]):
             corners = casters.world_corners
             block = sees(camera, corners) & in_the_way(light, texel_of(camera), seen, spread, corners)
             if block.any():
-                about = are_faces, side < resolution, used_texels(camera, one), casters.taken(block)
+                about = are_faces, side < resolution, used_texels(camera, one), casters.taken(block), casters
                 found.append(ShadowMap(number, camera, (0, 0), *about))
     return found
 
@@ -289,15 +292,19 @@ def brought_down(casters: InstanceTable, camera: Camera) -> InstanceTable:
     time."""
     depths = (camera.matrix_world[:3, 3] - casters.world_corners) @ camera.matrix_world[:3, 2]
     is_above, begins_above = depths.max(axis=1) < camera.near, depths.min(axis=1) < camera.near
+    if begins_above.any():
+        # what is beside the map is not seen
+        is_over = sees(replace(camera, near=-MAX_LENGTH, far=MAX_LENGTH), casters.world_corners)
+        is_above, begins_above = is_above & is_over, begins_above & is_over
     if not begins_above.any():
         return casters
     is_moved = is_above & casters.of_kinds(_comes_down)
     made = [_pressed(casters.placed[k], camera, depths[k]) for k in np.flatnonzero(is_moved).tolist()]
     rows = [*np.flatnonzero(is_moved).tolist()]
-    for k in np.flatnonzero(begins_above & ~is_above & casters.of_kinds(_can_be_pressed)).tolist():
-        if upper := pressed_above(casters.placed[k], camera, _PRESSED * camera.far):
-            made.append(PolygonInstance(upper, camera.matrix_world))
-            rows.append(k)
+    partly = np.flatnonzero(begins_above & ~is_above & casters.of_kinds(_can_be_pressed)).tolist()
+    if upper := pressed_above([casters.placed[k] for k in partly], camera, _PRESSED * camera.far):
+        made.append(PolygonInstance(upper, camera.matrix_world))
+        rows.append(partly[0])
     return with_others(casters, np.array(rows, int), made, ~is_moved)
 
 

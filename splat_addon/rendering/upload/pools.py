@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 #: Larger objects have textures of their own, and a draw call each: that is little beside them.
 MOST_SPLATS = 2048
 
-#: All that may be in one pool, which is made at once.
+#: Splats or triangles that may be in one pool, which is made at once.
 MOST_POOLED = 1 << 18
 
 

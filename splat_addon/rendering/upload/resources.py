@@ -13,7 +13,7 @@ import numpy as np
 
 from ...hierarchy import Hierarchy
 from ...surfels import Surfels
-from ..detail.levels import built_hierarchy, hierarchy_before, hierarchy_of, keep_hierarchy, make_hierarchy
+from ..detail.hierarchies import built_hierarchy, hierarchy_before, hierarchy_of, keep_hierarchy, make_hierarchy
 from ..device import Device
 from ..device.interface import Pipeline, PipelineDescription, Texture
 from ..scene import Finish, Placed, SurfaceTexture

@@ -9,7 +9,7 @@ from splat_addon.blender.export.live_meshes import LiveMeshes
 from splat_addon.blender.export.scene import SurfelStore, export_scene
 from splat_addon.blender.geometry.attributes import read_surfels
 from splat_addon.blender.geometry.points_proxy import shown_points
-from splat_addon.rendering.detail.levels import hierarchy_before, hierarchy_of
+from splat_addon.rendering.detail.hierarchies import hierarchy_before, hierarchy_of
 
 
 @pytest.fixture

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The calls that drew one sample draw the others, with other values, and the picture is the same as without that."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from splat_addon.rendering import Camera, Light, Scene, Settings, look_at
+from splat_addon.rendering.plan import executor
+from splat_addon.rendering.plan.frame_plan import FramePlan
+from splat_addon.rendering.plan.repeats import Repeats
+from splat_addon.rendering.scene import Instance
+from splat_addon.sampling import TriangleMesh, sample_mesh
+
+PLACES = [(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)]
+SHEET = sample_mesh(TriangleMesh(np.array(PLACES, float), np.array([(0, 1, 2), (0, 2, 3)])), resolution=8)
+CAMERA = Camera.perspective(look_at((0, -4, 3), (0, 0, 0)), 0.8, (24, 16))
+SAMPLES = 3
+
+
+def scene(transparent: bool = False) -> Scene:
+    """A small sheet above a large one that reaches the picture's edge."""
+    above, below = np.diag([0.5, 0.5, 1, 1]), np.diag([2.0, 2.0, 1, 1])
+    above[2, 3] = 0.7
+    small = SHEET
+    if transparent:
+        small = replace(SHEET, colors=SHEET.colors * np.float32([1, 1, 1, 0.5]))
+    placed = Instance(small, above, name="above"), Instance(SHEET, below, name="below")
+    return Scene(placed, lights=[Light("sun", direction=(0.2, 0.1, -1), energy=2)], world=(0.1,) * 3)
+
+
+def drawn(render, monkeypatch, of: Scene, settings: Settings, may_repeat: bool | None = None):
+    """The frame, and how often each pass ran."""
+    ran = []
+    with monkeypatch.context() as patch:
+        patch.setattr(executor, "run_pass", lambda tile, p: (ran.append(p.name), p.run(tile, p))[1])
+        if may_repeat is not None:
+            patch.setattr(FramePlan, "may_repeat", may_repeat)
+        frame = render(of, CAMERA, settings)
+    return frame, ran
+
+
+@pytest.mark.parametrize("method", ["mip", "quad"])
+def test_samples_are_drawn_by_the_calls_of_the_first(render, monkeypatch, method):
+    settings = Settings(method, samples=SAMPLES, outputs=("color", "depth", "normal", "object_index"))
+    frame, ran = drawn(render, monkeypatch, scene(), settings)
+    anew, ran_anew = drawn(render, monkeypatch, scene(), settings, may_repeat=False)
+    assert sorted(set(ran)) == sorted(ran) and len(ran_anew) > 2 * len(ran)
+    for name in settings.outputs:
+        np.testing.assert_array_equal(getattr(frame, name), getattr(anew, name))
+    assert frame.stats["splats_drawn"] == anew.stats["splats_drawn"] > 0
+
+
+def test_layers_are_drawn_anew(render, monkeypatch):
+    """How many there are is read while they are drawn."""
+    _, ran = drawn(render, monkeypatch, scene(transparent=True), Settings(samples=SAMPLES))
+    assert ran.count("visibility") >= SAMPLES
+
+
+def test_calls_hold_for_the_textures_that_they_drew_into():
+    kept, p = Repeats(records=True), SimpleNamespace()
+    called, texture = [], object()
+    kept.begin()
+    kept.call(called.append, 1)
+    kept.uses("depth", texture)
+    kept.end(p, "target")
+    for call in kept.of(p).calls:
+        call()
+    assert called == [1, 1] and kept.of(p).target == "target" and kept.of(SimpleNamespace()) is None
+    assert kept.are_still({"depth": texture, "more": None}) and not kept.are_still({"depth": object()})
+    kept.forget()
+    assert kept.of(p) is None and kept.are_still({})
