@@ -67,3 +67,70 @@ def las_file(
         compressor.compress_many(np.frombuffer(rows.tobytes(), np.uint8))
         compressor.done()
     return stream.getvalue()
+
+
+def ptx_scan(points: np.ndarray, columns: int, matrix: np.ndarray) -> str:
+    """One scan of a PTX file. points: rows of numbers, whose number is a multiple of `columns`. matrix: (4, 4), which
+    points are multiplied with from the right."""
+    rows = [[columns], [len(points) // columns], matrix[:3, 3], *matrix[:3, :3].T, *matrix.T, *points]
+    return "".join(" ".join(f"{number:.9g}" for number in row) + "\n" for row in rows)
+
+
+def pcd_file(rows: np.ndarray, data: str, viewpoint: str = "0 0 0 1 0 0 0") -> bytes:
+    """A PCD file of rows with named fields. data: as its header says it."""
+    kinds = [rows.dtype[name].base for name in rows.dtype.names]
+    counts = [int(np.prod(rows.dtype[name].shape, dtype=int)) for name in rows.dtype.names]
+    head = {
+        "# .PCD v0.7": [],
+        "VERSION": ["0.7"],
+        "FIELDS": rows.dtype.names,
+        "SIZE": [kind.itemsize for kind in kinds],
+        "TYPE": [kind.kind.upper() for kind in kinds],
+        "COUNT": counts,
+        "WIDTH": [len(rows)],
+        "HEIGHT": [1],
+        "VIEWPOINT": [viewpoint],
+        "POINTS": [len(rows)],
+        "DATA": [data],
+    }
+    top = "".join(" ".join([word, *map(str, values)]) + "\n" for word, values in head.items()).encode()
+    if data == "ascii":
+        lines = (" ".join(repr(n.item()) for name in rows.dtype.names for n in np.ravel(row[name])) for row in rows)
+        return top + "".join(line + "\n" for line in lines).encode()
+    if data == "binary":
+        return top + rows.tobytes()
+    whole = b"".join(np.ascontiguousarray(rows[name]).tobytes() for name in rows.dtype.names)
+    packed = lzf_packed(whole)
+    return top + struct.pack("<II", len(packed), len(whole)) + packed
+
+
+def lzf_packed(data: bytes) -> bytes:
+    """Bytes packed by LZF: what was there before, within 8 kB, is repeated."""
+    out, at, plain, seen = bytearray(), 0, bytearray(), {}
+
+    def flush() -> None:
+        for start in range(0, len(plain), 32):
+            piece = plain[start : start + 32]
+            out.extend((len(piece) - 1, *piece))
+        plain.clear()
+
+    while at < len(data):
+        key = data[at : at + 3]
+        before, seen[key] = seen.get(key, -1), at
+        length = 0
+        if len(key) == 3 and 0 <= before and at - before <= 8192:
+            while length < 264 and at + length < len(data) and data[before + length] == data[at + length]:
+                length += 1
+        if length < 3:
+            plain.append(data[at])
+            at += 1
+            continue
+        flush()
+        back = at - before - 1
+        size = length - 2
+        out.append(min(size, 7) << 5 | back >> 8)
+        out.extend([size - 7] if size >= 7 else [])
+        out.append(back & 255)
+        at += length
+    flush()
+    return bytes(out)

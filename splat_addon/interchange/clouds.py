@@ -55,7 +55,7 @@ def read_all(cloud: Cloud, progress: Progress | None = None) -> Columns:
     tables, count = [], 0
     for share, table in cloud.portions:
         tables.append(table)
-        count += len(table[POSITION[0]])
+        count += len(next(iter(table.values()), ()))
         if progress is not None and not progress(count, share):
             raise ReadingCancelled
     names = dict.fromkeys(name for table in tables for name in table)

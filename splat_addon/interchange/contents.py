@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 from dataclasses import replace
 
-from . import las
+from . import las, pcd, ptx, xyz
 from .clouds import COLOR, Cloud, Progress, read_all
 from .columns import FLOAT_COLORS, Columns, has
 from .gaussians import DEFAULT_FLATNESS, Gaussians
@@ -14,15 +14,14 @@ from .ply_contents import coarse_steps, read_ply_contents
 from .ply_header import is_ply, other_kind
 from .points import Points, points
 from .surfel_ply import StoredSurfels
-
-#: Bytes from which a format is told.
-_HEAD = 1 << 16
+from .text_rows import HEAD
 
 #: name of a format -> its reader: `is_this(head)` tells it by the first bytes, `opened(path)` gives a `Cloud`.
-_SCANS = {"LAS, LAZ and COPC": las}
+#: Text with nothing that tells it but its numbers comes last.
+_SCANS = {"LAS, LAZ, COPC": las, "PCD": pcd, "PTX": ptx, "text such as PTS, XYZ and CSV": xyz}
 
 #: Usual ends of the names of files that can be read.
-SUFFIXES = (".ply", ".las", ".laz")
+SUFFIXES = (".ply", ".las", ".laz", ".ptx", ".pts", ".xyz", ".txt", ".asc", ".csv", ".pcd")
 
 
 def read_contents(
@@ -45,7 +44,7 @@ def read_contents(
     if float_colors not in FLOAT_COLORS:
         raise ValueError(f"float_colors must be one of {', '.join(FLOAT_COLORS)}, not {float_colors!r}.")
     with open(path, "rb") as stream:
-        head = stream.read(_HEAD)
+        head = stream.read(HEAD)
     if is_ply(head):
         return read_ply_contents(path, flatness, float_colors)
     for reader in _SCANS.values():
