@@ -52,27 +52,22 @@ class Cloud:
 
 def read_all(cloud: Cloud, progress: Progress | None = None) -> Columns:
     """All points of a cloud. Raises `ReadingCancelled`, and ValueError with a sentence."""
-    tables, count = [], 0
+    tables, counts = [], []
     for share, table in cloud.portions:
         tables.append(table)
-        count += len(next(iter(table.values()), ()))
-        if progress is not None and not progress(count, share):
+        counts.append(len(next(iter(table.values()), ())))
+        if progress is not None and not progress(sum(counts), share):
             raise ReadingCancelled
     names = dict.fromkeys(name for table in tables for name in table)
-    return Columns({name: _joined(tables, name) for name in names or POSITION})
+    return Columns({name: _joined(tables, counts, name) for name in names or POSITION})
 
 
-def _joined(tables: list[Table], name: str) -> np.ndarray:
-    """A column of all tables; those that lack it have no number there."""
-    parts = [table.pop(name, None) for table in tables]
+def _joined(tables: list[Table], counts: list[int], name: str) -> np.ndarray:
+    """A column of all tables, which is taken from them; those that lack it have no number there."""
     missing = np.nan if name in COLOR else 0
-    lengths = [_length(table, part) for table, part in zip(tables, parts, strict=True)]
-    parts = [np.full(n, missing) if part is None else part for n, part in zip(lengths, parts, strict=True)]
+    parts = [table.pop(name, None) for table in tables]
+    parts = [np.full(n, missing) if part is None else part for n, part in zip(counts, parts, strict=True)]
     return np.concatenate(parts) if parts else np.empty(0)
-
-
-def _length(table: Table, part: np.ndarray | None) -> int:
-    return len(next(iter(table.values()))) if part is None else len(part)
 
 
 def without(table: Table, left_out: np.ndarray) -> Table:

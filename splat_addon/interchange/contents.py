@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 from dataclasses import replace
 
-from . import las, pcd, ptx, xyz
+from . import e57, las, pcd, ptx, xyz
 from .clouds import COLOR, Cloud, Progress, read_all
 from .columns import FLOAT_COLORS, Columns, has
 from .gaussians import DEFAULT_FLATNESS, Gaussians
@@ -18,10 +18,10 @@ from .text_rows import HEAD
 
 #: name of a format -> its reader: `is_this(head)` tells it by the first bytes, `opened(path)` gives a `Cloud`.
 #: Text with nothing that tells it but its numbers comes last.
-_SCANS = {"LAS, LAZ, COPC": las, "PCD": pcd, "PTX": ptx, "text such as PTS, XYZ and CSV": xyz}
+_SCANS = {"LAS, LAZ, COPC": las, "E57": e57, "PCD": pcd, "PTX": ptx, "text such as PTS, XYZ and CSV": xyz}
 
 #: Usual ends of the names of files that can be read.
-SUFFIXES = (".ply", ".las", ".laz", ".ptx", ".pts", ".xyz", ".txt", ".asc", ".csv", ".pcd")
+SUFFIXES = (".ply", ".las", ".laz", ".e57", ".ptx", ".pts", ".xyz", ".txt", ".asc", ".csv", ".pcd")
 
 
 def read_contents(

@@ -29,9 +29,7 @@ _NAMES = {
     "red": ("r", "red"),
     "green": ("g", "green"),
     "blue": ("b", "blue"),
-    "nx": ("nx", "normalx"),
-    "ny": ("ny", "normaly"),
-    "nz": ("nz", "normalz"),
+    **{f"n{axis}": (f"n{axis}", f"normal{axis}") for axis in "xyz"},
     "intensity": ("i", "intensity", "reflectance", "scalarintensity"),
 }
 _COLUMNS = {name: column for column, names in _NAMES.items() for name in names}
