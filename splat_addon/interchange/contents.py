@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 from dataclasses import replace
 
-from . import e57, las, pcd, ptx, xyz
+from . import e57, las, pcd, ptx, spz, xyz
 from .clouds import COLOR, Cloud, Progress, read_all
 from .columns import FLOAT_COLORS, Columns, has
 from .gaussians import DEFAULT_FLATNESS, Gaussians
@@ -21,7 +21,7 @@ from .text_rows import HEAD
 _SCANS = {"LAS, LAZ, COPC": las, "E57": e57, "PCD": pcd, "PTX": ptx, "text such as PTS, XYZ and CSV": xyz}
 
 #: Usual ends of the names of files that can be read.
-SUFFIXES = (".ply", ".las", ".laz", ".e57", ".ptx", ".pts", ".xyz", ".txt", ".asc", ".csv", ".pcd")
+SUFFIXES = (".ply", ".spz", ".las", ".laz", ".e57", ".ptx", ".pts", ".xyz", ".txt", ".asc", ".csv", ".pcd")
 
 
 def read_contents(
@@ -36,7 +36,7 @@ def read_contents(
     flatness: maximum ratio of a Gaussian's smallest to its middle sigma for it to count as a surfel.
     float_colors: what red, green and blue mean if they are floats, a name in `FLOAT_COLORS`: sRGB display values, as
         Blender's own import takes them, or scene-linear ones.
-    progress: called with the number of points and the share of the file so far, except for PLY.
+    progress: called with the number of points and the share of the file so far, except for PLY and SPZ.
 
     Raises ValueError with one sentence for a file that has none of the formats, is damaged or has no positions; OSError
     if it cannot be read; `ReadingCancelled` if `progress` returns False.
@@ -47,10 +47,12 @@ def read_contents(
         head = stream.read(HEAD)
     if is_ply(head):
         return read_ply_contents(path, flatness, float_colors)
+    if spz.is_this(head):
+        return spz.read_spz(path, flatness)
     for reader in _SCANS.values():
         if reader.is_this(head):
             return _points(reader.opened(path), float_colors, progress)
-    known = ", ".join(["PLY", *_SCANS])
+    known = ", ".join(["PLY", "SPZ", *_SCANS])
     raise ValueError(f"This is no file of points that can be read, which are {known}.{other_kind(head)}")
 
 

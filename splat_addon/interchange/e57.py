@@ -20,7 +20,7 @@ from .e57_streams import Field, fields_of, number_in, points_of
 
 _CARTESIAN = ("cartesianX", "cartesianY", "cartesianZ")
 _SPHERICAL = ("sphericalRange", "sphericalAzimuth", "sphericalElevation")
-_NORMAL = ("normalX", "normalY", "normalZ")
+_NORMAL = tuple(f"normal{axis}" for axis in "XYZ")
 _COLORS = ("colorRed", "colorGreen", "colorBlue")
 #: Fields that are attributes -> their names.
 _OTHERS = {"intensity": "intensity", "timeStamp": "gps_time"}
