@@ -41,7 +41,7 @@ class Lines:
 
     @property
     def share(self) -> float:
-        """Of the file that was read."""
+        """The share of the file that was read."""
         return min(self.stream.tell() / max(self.size, 1), 1.0)
 
     def rows(self, count: int | None, width: int, separator: str | None = None) -> Iterator[np.ndarray]:

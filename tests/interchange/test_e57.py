@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bench.e57_files import Scan, content_of, e57_file, floats, pose, whole, with_checksums
+from scan_files.e57 import Scan, content_of, e57_file, floats, pose, whole, with_checksums
 from splat_addon.interchange import e57_streams, read_contents
 from splat_addon.interchange.e57_pages import checksums
 

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from bench.scan_files import OFFSET, SCALE, las_file, las_rows
+from scan_files.formats import OFFSET, SCALE, las_file, las_rows
 from splat_addon.interchange import ReadingCancelled, clouds, las, laz, read_contents
 
 COUNT = 700

@@ -6,7 +6,7 @@ import re
 import numpy as np
 import pytest
 
-from bench.scan_files import lzf_packed, pcd_file
+from scan_files.formats import lzf_packed, pcd_file
 from splat_addon.interchange import lzf, read_contents
 
 ENCODINGS = ("ascii", "binary", "binary_compressed")

@@ -6,7 +6,7 @@ import gzip
 import numpy as np
 import pytest
 
-from bench.scan_files import spz_file
+from scan_files.formats import spz_file
 from splat_addon.interchange import read_contents
 from splat_addon.quaternions import quaternion_axes
 

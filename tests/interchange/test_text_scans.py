@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from bench.scan_files import ptx_scan
+from scan_files.formats import ptx_scan
 from splat_addon.interchange import read_contents, text_rows
 
 

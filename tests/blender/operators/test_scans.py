@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 import pytest
 
-from bench.scan_files import las_file
+from scan_files.formats import las_file
 from splat_addon.blender.geometry.scan_attributes import write_scan_attributes
 from splat_addon.blender.geometry.scene_offset import scene_offset
 from splat_addon.interchange import read_contents

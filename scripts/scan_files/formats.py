@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writes small files of the formats that scanners write, for the fuzzer and for tests of the readers."""
+"""Writes LAS, LAZ, PTX, PCD and SPZ."""
 
 from __future__ import annotations
 

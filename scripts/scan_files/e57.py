@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writes small E57 files, for the fuzzer and for tests of the reader."""
+"""Writes E57."""
 
 from __future__ import annotations
 
