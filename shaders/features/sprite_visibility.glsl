@@ -10,7 +10,7 @@ void sprite_visibility_shape(Splat splat, vec2 corner, float offset, inout vec4 
   if (reaches_near(splat)) return;
   vec2 tilt = sprite_tilt(splat.axis_u, splat.axis_v), place = disc_in_sprite(tilt, corner);
   float radius = sqrt(max(dot(splat.axis_u, splat.axis_u), dot(splat.axis_v, splat.axis_v)));
-  moved = splat_corner(splat.position + vec3(radius * place, 0.0), offset);
+  moved = splat_corner(splat.position + vec3(HALF_SIDE * radius * place, 0.0), offset);
   across_offset = vec3(0.0, 0.0, offset);
   // Linear in the picture, because the sprite is parallel to it.
   place_depth.z = sprite_depth(-splat.position.z, radius, dot(tilt, place));

@@ -13,7 +13,10 @@ float half_square(Plane plane) {
 }
 
 #part vertex
-void adjust(inout Splat splat, inout Plane plane, bool is_orthographic) {}
+// Beyond the ellipse the paper's depths are those of the plane, as near as that comes.
+void adjust(inout Splat splat, inout Plane plane, bool is_orthographic) {
+  if (AS_PRINTED) plane.reach = plane.depth - view.near;
+}
 
 // The ellipse and the low-pass disc of sqrt(2) pixels around the splat's centre.
 vec2 footprint(Plane plane, vec2 size, inout vec2 middle) {
@@ -24,13 +27,14 @@ vec2 footprint(Plane plane, vec2 size, inout vec2 middle) {
   return 1.05 * max(size, vec2(LOW_PASS_RADIUS)) + length(plane.center - middle);
 }
 #part fragment
-// Weight and depth: that of the plane inside the ellipse, that of the centre where only the low-pass reaches.
+// Weight and depth: that of the plane inside the ellipse, that of the centre where only the low-pass reaches; as printed
+// that of the plane there too, where the eye sees it.
 vec2 splat_sample(Plane plane, vec2 pixel) {
   Place place = place_at(plane, pixel);
   float inside = dot(place.uv, place.uv);
   bool is_inside = inside <= 1.0 && place.k > 0.0;
   float rho2 = min(is_inside ? inside : 2.0, 0.5 * dot(place.d, place.d));
-  bool is_drawn = !AS_PRINTED || max(abs(place.d.x), abs(place.d.y)) <= half_square(plane);
-  float depth = plane.depth + (is_inside ? dot(plane.slope, place.uv) : 0.0);
+  bool is_drawn = !AS_PRINTED || (max(abs(place.d.x), abs(place.d.y)) <= half_square(plane) && place.k > 0.0);
+  float depth = plane.depth + (is_inside || AS_PRINTED ? dot(plane.slope, place.uv) : 0.0);
   return vec2(is_drawn && rho2 <= 1.0 ? exp(-2.0 * rho2) : 0.0, depth);
 }

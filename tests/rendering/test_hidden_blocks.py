@@ -76,7 +76,7 @@ def test_no_method_draws_another_picture(method, render, monkeypatch):
     one, every = pictures(scene_of(), CAMERA, replace(SOME, method=method), render, monkeypatch)
     assert are_equal(one, every)
     kind = METHODS[method]
-    is_looked_for = kind.rasterizer != "point_sprite" and not kind.sprites_hide and not kind.widens
+    is_looked_for = kind.rasterizer != "point_sprite" and not kind.hides_within and not kind.widens
     assert (drawn(one) < 0.85 * drawn(every)) == is_looked_for
     assert is_looked_for or drawn(one) == drawn(every)
 

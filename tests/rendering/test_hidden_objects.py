@@ -66,7 +66,7 @@ def test_no_method_draws_another_picture(method, render, monkeypatch):
     settings = Settings(method=method, outputs=ALL, detail_tolerance=0.0)
     one, every = pictures(crowd(), perspective(), settings, render, monkeypatch)
     assert are_equal(one, every)
-    is_looked_for = METHODS[method].rasterizer != "point_sprite" and not METHODS[method].sprites_hide
+    is_looked_for = METHODS[method].rasterizer != "point_sprite" and not METHODS[method].hides_within
     assert (one.stats["instances_hidden"] > 10) == is_looked_for
     assert (one.stats["splats_drawn"] < 0.75 * every.stats["splats_drawn"]) == is_looked_for
 

@@ -735,11 +735,11 @@ GERMAN = {
         "Der Raum des Objekts selbst, dessen Skalierung dann auch den Abstand skaliert"
     ),
     (
-        "Uses the paper's own formula, whose depths are wrong for splats tilted towards the viewer (Botsch "
-        "and Kobbelt 2003, equation 4 as printed)"
+        "Uses the paper's own formulas: splats have half their size, and wrong depths where they are tilted "
+        "(Botsch and Kobbelt 2003, equations 1 and 4 as printed)"
     ): (
-        "Verwendet die Formel des Artikels, deren Tiefen bei zum Betrachter geneigten Splats falsch sind "
-        "(Botsch und Kobbelt 2003, Gleichung 4 wie gedruckt)"
+        "Verwendet die Formeln des Artikels: Splats haben die halbe Größe und, wo sie geneigt sind, falsche Tiefen "
+        "(Botsch und Kobbelt 2003, Gleichungen 1 und 4 wie gedruckt)"
     ),
     (
         "Uses the paper's own formulas: discs that face the ray vanish, and small ones lose their depth "

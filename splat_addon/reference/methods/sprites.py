@@ -15,11 +15,12 @@ def samples(
 ) -> tuple[np.ndarray, np.ndarray]:
     """(M,) weights and (M,) depths at (M, 2) picture points (Botsch and Kobbelt 2003, equations 1 to 4).
 
-    as_printed: the offset of equation 2, which is in radii and towards the viewer, is added to the distance as it is.
+    as_printed: the square's side is one radius by equation 1, and the offset of equation 2, which is in radii and
+    towards the viewer, is added to the distance as it is.
     """
     normal = plane.normal / np.linalg.norm(plane.normal)
     normal = normal if normal[2] >= 0 else -normal
-    q = (points - plane.center) / (plane.radius * plane.scale)
+    q = (points - plane.center) / ((0.5 if as_printed else 1.0) * plane.radius * plane.scale)
     offset = -(q @ normal[:2]) / max(normal[2], LEAST_COSINE)
     rho2 = (q * q).sum(axis=1) + offset**2
     depths = plane.depth + (offset if as_printed else -plane.radius * offset)

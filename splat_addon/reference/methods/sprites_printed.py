@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The numpy twin of shaders/methods/sprites_printed.glsl: equation 4 as the paper has it."""
+"""The numpy twin of shaders/methods/sprites_printed.glsl: equations 1 and 4 as the paper has them."""
 
 from __future__ import annotations
 

@@ -57,7 +57,7 @@ def _words(planning, p) -> tuple[str, ...]:
     if p.host == "point_sprite.frag":
         return ("of_sprites",)
     if p.host == "visibility.frag":
-        is_of_sprites = planning.method.sprites_hide and p.kind in ("opaque", "layer")
+        is_of_sprites = planning.method.hides_within == "sprite" and p.kind in ("opaque", "layer")
         return ("of_sprites",) if is_of_sprites else ("of_ellipses",)
     if p.host == "screen_space.frag":
         return ("blurs_lines",) if planning.method.blurs_rims else ("cuts_at_lines",)

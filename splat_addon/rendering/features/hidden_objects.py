@@ -62,7 +62,7 @@ def search(planning, seen: Texture, rows: int) -> Pass | None:
             f"or they have fewer than {LEAST_SURFELS:,} surfels",
         )
         return None
-    if planning.method.sprites_hide or planning.settings.multisampling:
+    if planning.method.hides_within or planning.settings.multisampling:
         planning.skip("hidden objects", "several depths in a sample, or colours with them, depend on all objects")
         return None
     planning.has(

@@ -13,7 +13,7 @@ from .drawing import draw_polygons, draw_splats, storage_samplers
 
 DEPTH = Texture("visibility_depth", "DEPTH32F", is_multisampled=True)
 ROW_DEPTH = Texture("row_depth", "DEPTH32F", silhouettes.of_rows)
-NAMES = ("visibility", "sprite_visibility")
+NAMES = ("visibility", "sprite_visibility", "square_visibility")
 _OF_POLYGONS = Part("visibility", ("of_polygons",), inputs=("polygon_corners",), only="polygons")
 
 
@@ -57,8 +57,10 @@ def passes(planning):
 def parts(planning, p):
     if p.host == "screen_space.frag" and p.kind in ("opaque", "layer"):
         yield Part("visibility")
-    if p.host == "visibility.frag" and p.kind in ("opaque", "layer") and planning.method.sprites_hide:
-        yield Part("sprite_visibility", only="splats")
+    if p.host == "visibility.frag" and p.kind in ("opaque", "layer") and planning.method.hides_within:
+        within = planning.method.hides_within
+        varyings = (("flat", "vec3", "square"),) if within == "square" else ()
+        yield Part(f"{within}_visibility", varyings=varyings, only="splats")
 
 
 def run(tile, p: Pass):

@@ -23,7 +23,8 @@ class Method:
     filters_silhouettes: a resolve pass filters silhouettes in the same way as colours.
     culls_hidden: splats behind everything that is seen are found before they are drawn. The papers draw them, and so
         do their methods here.
-    sprites_hide: the visibility pass draws the method's sprites; otherwise it draws the exact ellipses.
+    hides_within: what the visibility pass draws of each splat, if not the exact ellipse: its "sprite", or what lies in
+        the paper's "square" around it.
     writes_depth: the shader writes the depth of every pixel, because the hardware's would differ from the one that the
         method corrects or clamps.
     widens: quads extend in space past the exact ellipses that the visibility pass draws; for splats seen edge-on, by
@@ -41,7 +42,7 @@ class Method:
     blurs_rims: bool = False
     filters_silhouettes: bool = False
     culls_hidden: bool = False
-    sprites_hide: bool = False
+    hides_within: str = ""
     writes_depth: bool = False
     widens: bool = False
     pixel_variance: float | None = None

@@ -10,5 +10,6 @@ METHOD = Method(
     summary=(
         "Draws each splat in the paper's square, which cuts off its filter, and cuts large splats away from the axis"
     ),
+    hides_within="square",
     pixel_variance=0.5,  # a disc of sqrt(2) pixels, where the Gaussian of that variance ends
 )

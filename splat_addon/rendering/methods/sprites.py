@@ -8,7 +8,7 @@ METHOD = Method(
     label="Sprites",
     paper="Botsch and Kobbelt 2003, sections 3.1 to 3.4",
     summary="Discs in point sprites, with holes at grazing angles",
-    sprites_hide=True,
+    hides_within="sprite",
     writes_depth=True,
     pixel_variance=1 / 12,
 )

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from splat_addon.quaternions import axes_quaternions
 from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.extremes import discs, sheet
 from splat_addon.reference.methods.homogeneous_printed import window_map
@@ -110,16 +111,73 @@ def test_equation_4_runs_from_0_at_the_near_plane_to_1_at_the_far_one_and_not_as
 
 
 def test_depths_lie_in_the_plane_of_a_tilted_disc_and_off_it_as_printed(render):
-    """A disc of radius 0.1 leans by 45 degrees.
+    """A disc of radius r = 0.14 leans by 45 degrees, and equation 2 gives the offset -(n_y / n_z) y = y.
 
-    Half a radius up, its plane is 0.05 nearer; by the printed formula it is half a unit farther.
+    Its plane is as much nearer as it is up. By equation 1 the square has side r, so as printed y is 1 at r / 2, and
+    equation 4 adds the y to the distance.
     """
     beside = discs((0.15, 0, -5), (0.01, 0, 0), (0, 0.01, 0))
-    scene, at = Scene((discs((0, 0, -2), (0.1, 0, 0), (0, 0.1, 0.1)), beside)), (82, 64)
+    scene, at = Scene((discs((0, 0, -2), (0.1, 0, 0), (0, 0.1, 0.1)), beside)), (74, 64)
     camera = Camera.orthographic(np.eye(4), 0.36, SIZE, 0.1, 10)
     up = (at[0] + 0.5 - 64) * 0.36 / 128
     assert render(scene, camera, SPRITES).depth[at] == pytest.approx(2 - up, abs=2e-3)
-    assert render(scene, camera, SPRITES_PRINTED).depth[at] == pytest.approx(2 + up / (0.1 * 2**0.5), abs=1e-2)
+    assert render(scene, camera, SPRITES_PRINTED).depth[at] == pytest.approx(2 + up / (0.1 * 2**0.5 / 2), abs=1e-2)
+
+
+def test_equation_1_is_the_whole_side_of_the_square_as_printed(render):
+    """Seen from the front, a disc of radius r is as wide as size_win = r (n / z) h / (t - b) pixels as printed, and
+    twice that in truth; n / (t - b) is 1 / (2 tan(fov / 2))."""
+    radius, depth, height = 0.3, 2.0, SIZE[1]
+    size_win = radius / depth * height / (2 * np.tan(0.5))
+    scene = Scene((discs((0, 0, -depth), (radius, 0, 0), (0, radius, 0)),))
+    for settings, size in ((SPRITES_PRINTED, size_win), (SPRITES, 2 * size_win)):
+        seen = render(scene, AHEAD, settings).coverage > 0
+        assert np.count_nonzero(seen.any(axis=0)) == pytest.approx(size, abs=1)
+        assert np.count_nonzero(seen) == pytest.approx(np.pi * (size / 2) ** 2, rel=0.05)
+
+
+def test_equation_4_puts_everything_up_to_twice_the_near_plane_at_depth_0_as_printed(render):
+    """a = f / (f - n) and b = -2 f n / (f - n): (a z + b) / z is below 0 for z < 2 n, and a window's depth is not."""
+    near, far, depths = 0.5, 20.0, (0.7, 0.9, 1.5)
+    a, b = far / (far - near), -2 * far * near / (far - near)
+    window = np.clip([(a * z + b) / z for z in depths], 0, 1)
+    assert window[0] == window[1] == 0 < window[2]
+    camera = Camera.perspective(np.eye(4), 1.0, (32, 32), near, far)
+    colors = (1, 0, 0), (0, 1, 0), (0, 0, 1)
+    scene = Scene(tuple(tinted((0, 0, -z), 0.2, color) for z, color in zip(depths, colors, strict=True)))
+    printed, corrected = (render(scene, camera, s).color[16, 16, :3] > 0.1 for s in (SPRITES_PRINTED, SPRITES))
+    assert corrected.tolist() == [True, False, False]
+    assert printed.tolist() == (window <= window[0]).tolist()
+
+
+def test_as_printed_ray_casting_gives_every_pixel_the_depth_of_the_plane(render):
+    """Botsch et al. 2005, sections 3 and 5: the depth is that of q, the ray's point in the plane, also where only the
+    low-pass reaches. The plane is z = -2 + 2 y, a ray's y is t z, so the depth is 2 / (1 + 2 t)."""
+    scene = Scene((discs((0, 0, -2), (1e-4, 0, 0), (0, 1e-4, 2e-4)), discs((0.9, 0, -4), (1e-4, 0, 0), (0, 1e-4, 0))))
+    t = (64.5 - 64) / 64 * np.tan(0.5)
+    depths = {
+        method: render(scene, AHEAD, replace(FLAT, method=method)).depth[64, 64]
+        for method in ("raycast", "raycast_printed")
+    }
+    assert depths["raycast"] == pytest.approx(2, abs=1e-6)
+    assert depths["raycast_printed"] == pytest.approx(2 / (1 + 2 * t), rel=1e-5)
+
+
+def test_as_printed_ray_casting_hides_within_the_paper_s_square(render):
+    """Away from the axis a disc that faces the camera's back plane is wider than the square of d = 2 r / z: what lies
+    beyond that is neither drawn nor does it hide anything."""
+    camera = Camera.perspective(np.eye(4), 2.6, SIZE, 0.01, 100)
+    scale = 64 / np.tan(1.3)
+    near, far = tinted((5, 0, -2), 1.9, (1, 0, 0)), tinted((10, 0, -4.2), 8, (0, 1, 0))
+    near = replace(near, rotations=axes_quaternions(*(np.array([a]) for a in ((0, 0, -1.0), (0, 1.0, 0), (1.0, 0, 0)))))
+    frame = render(Scene((near, far)), camera, replace(FLAT, method="raycast_printed"))
+    red, green = frame.color[64, :, 0] > 0.1, frame.color[64, :, 1] > 0.1
+    x = np.arange(128) + 0.5 - 64
+    inside = abs(x - 5 / 2 * scale) <= 1.9 / 2 * scale
+    assert np.count_nonzero(red) > 0 and not red[~inside].any()
+    exact = render_exact(Scene((near,)), camera, FLAT, samples=1).coverage[64] > 0
+    assert np.count_nonzero(exact & ~inside) > 3
+    assert green[exact & ~inside & (abs(x - 10 / 4.2 * scale) < 8 / 4.2 * scale)].all()
 
 
 def test_equations_6_and_7_map_the_picture_to_the_splat_and_to_the_depth_in_the_window():
