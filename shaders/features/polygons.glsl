@@ -19,14 +19,12 @@ void polygons_keep() {
 #include "lib/polygon_share/{polygon_share}.glsl"
 #include "lib/polygon_blend/{polygon_blend}.glsl"
 
-const float SAME_SURFACE = 0.7;  // minimum cosine between normals of the same surface
-
 float polygon_share(MeanSurface mean, vec3 normal, float depth) {
   float behind = depth - mean.depth;
   if (is_elsewhere(behind)) return behind > 0.0 ? 0.0 : 1.0;
   float weight = splat_weight(mean);
   // Splats of the same surface may be slightly behind a polygon and remain visible; for other splats the nearer surface
-  // wins.
+  // wins. Surfaces are the same whose normals have this cosine; as printed, all are.
   bool is_same = dot(normal, mean.normal) > SAME_SURFACE * length(mean.normal);
   return behind < 0.0 && !is_same ? 1.0 : 1.0 - min(weight, 1.0);
 }

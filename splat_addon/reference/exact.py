@@ -154,7 +154,8 @@ def _opaque_surface(splats: Splats, bounds, grid: RayGrid, scene: Scene, camera:
     surface = visible_surface(splats, bounds, grid, epsilon, limit)
     if asked_for.lights_splats:
         hits = lit_polygons(hits, grid, scene, camera, asked_for)
-    return joined(surface, hits, contact(scene, epsilon)), limit
+    any_normals = (-2.0,) if asked_for.as_printed else ()
+    return joined(surface, hits, contact(scene, epsilon), *any_normals), limit
 
 
 def _opaque_and_transparent(splats: Splats, bounds, settings: Settings):

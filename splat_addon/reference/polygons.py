@@ -192,10 +192,11 @@ def _take(instance, camera, corners, rays, triangle, shares, direction, found: H
     found.surface[rays] = surface
 
 
-def joined(splats: Surface, polygons: Hits, contact: float) -> Surface:
+def joined(splats: Surface, polygons: Hits, contact: float, same_surface: float = SAME_SURFACE) -> Surface:
     """Guennebaud et al. 2006, section 5.1: where both are of one surface, the sum of weights, up to 1, blends them.
 
-    contact: how deep a polygon may lie behind splats of its surface.
+    contact: how deep a polygon may lie behind splats of its surface. same_surface: minimum cosine between the normals
+    of both; as printed none.
     """
     count = len(polygons.depth)
     weight, share = np.zeros(count), np.where(np.isfinite(polygons.depth), 1.0, 0.0)
@@ -204,7 +205,7 @@ def joined(splats: Surface, polygons: Hits, contact: float) -> Surface:
     row = np.searchsorted(splats.rays, at)
     behind = polygons.depth[at] - splats.depth[row]
     front = np.where(splats.weight[row] < LEAST_FRONT, splats.weight[row] / BACK_WEIGHT, splats.weight[row])
-    is_same = np.einsum("rk,rk->r", polygons.normal[at], splats.normal[row]) > SAME_SURFACE
+    is_same = np.einsum("rk,rk->r", polygons.normal[at], splats.normal[row]) > same_surface
     blended = np.where((behind < 0) & ~is_same, 1.0, 1 - np.minimum(front, 1))
     share[at] = np.where(behind > contact, 0.0, blended)
     rays = np.flatnonzero((weight > 0) | (share > 0))

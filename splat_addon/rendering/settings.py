@@ -68,7 +68,8 @@ class Settings:
     filter_variance: of the Gaussian that filters a pixel, in square pixels, for the methods that have one (Mip Filter,
         EWA, EWA in Space); the pixels of `reference.filters` have the default, the papers 1.
     edge_threshold: where splats' weights sum to less, the pixel fades to the background (the view-independent paper's
-        threshold, section 4.5); 1 is one splat's centre, 0 covers whatever a splat reaches.
+        threshold, section 4.5); 1 is one splat's centre, 0 covers whatever a splat reaches. As printed, the sums below
+        it are not normalised, so that the picture jumps at the threshold.
     epsilon: how far, in radii of each splat, the visibility pass moves it back along the view ray;
         surfaces closer than that mix (facts: 0.5 to 5 is a plateau, 0 breaks the picture up).
     epsilon_length: the same for all splats, in scene units, on top of that. The papers have this alone.

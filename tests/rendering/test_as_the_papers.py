@@ -12,7 +12,7 @@ import pytest
 from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.extremes import discs
 from splat_addon.reference.metrics import psnr
-from splat_addon.rendering import Camera, Light, Material, PolygonInstance, Scene, Settings, plan
+from splat_addon.rendering import Camera, Light, Material, PolygonInstance, Scene, Settings, make_polygons, plan
 from splat_addon.rendering.methods import METHODS
 
 SIZE = (96, 96)
@@ -54,6 +54,23 @@ def hybrid():
     surfels = (replace(ball, shape=replace(ball.surfels, **half), light_set=1),)
     polygons = floor, replace(other, light_set=1), near
     return replace(scene, surfels=surfels, polygons=polygons, lights=lights, world=(0.1, 0.2, 0.3)), camera
+
+
+@pytest.mark.parametrize("method", ["quad", "mip"])
+def test_as_printed_splats_are_blended_with_polygons_whatever_their_normals(method, render):
+    """Guennebaud et al. 2006, section 5.1, "if and only if the pixel is covered by a polygon": here the splat's plane
+    is a little behind the polygon's, within epsilon, and its shading normal points elsewhere."""
+    normal = np.array((1.0, 0.0, 0.2)) / np.hypot(1, 0.2)
+    splat = discs((0, 0, -3.01), (0.6, 0, 0), (0, 0.6, 0), (1, 0, 0), normals=normal)
+    corners = np.array([[(-1, -1, -3), (1, -1, -3), (0, 1.5, -3)]], np.float64)
+    board = make_polygons(corners[0], np.array([[0, 1, 2]]), color=(0, 1, 0, 1))
+    scene = Scene((splat,), polygons=(PolygonInstance(board),))
+    camera = Camera.perspective(np.eye(4), 0.6, (32, 32), 0.01, 100)
+    for as_printed in (False, True):
+        settings = replace(QUADS, method=method, shading="flat", as_printed=as_printed)
+        color = render(scene, camera, settings).color[16, 16]
+        np.testing.assert_allclose(color, render_exact(scene, camera, settings, samples=1).color[16, 16], atol=0.05)
+        assert (color[0] > 0.9) == as_printed
 
 
 @pytest.mark.parametrize("shading", ["phong", "principled", "toon", "ramp", "normals"])

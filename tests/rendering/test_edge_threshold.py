@@ -47,6 +47,21 @@ def test_one_disc_fades_by_its_kernel(threshold, side, sum_format, render):
     np.testing.assert_allclose(frame.color[..., :3], expected[..., None] * (0.2, 0.5, 0.8), atol=tolerance)
 
 
+def test_as_printed_what_is_below_the_threshold_is_not_normalised(render):
+    """The view-independent paper, section 5: "we perform per-pixel normalization on those pixels whose summation of
+    filter weights is greater than a threshold"; the others keep their sums of weighted colours, over nothing."""
+    disc = discs((0, 0, -3), (1, 0, 0), (0, 1, 0), (0.2, 0.5, 0.8))
+    threshold = 0.5
+    settings = Settings(method="quad", shading="flat", edge_threshold=threshold, transparent_film=True, as_printed=True)
+    frame = render(Scene((disc,)), CAMERA, settings)
+    weight = np.where(place() <= 1, np.exp(-2 * place() ** 2), 0)
+    sums = weight[..., None] * (0.2, 0.5, 0.8)
+    expected = np.where((weight > threshold)[..., None], sums / np.maximum(weight, 1e-9)[..., None], sums)
+    near = abs(weight - threshold) < 1e-4
+    assert 0 < np.count_nonzero((weight > 0) & (weight < threshold))
+    np.testing.assert_allclose(frame.color[~near][..., :3], expected[~near], atol=1e-4)
+
+
 @pytest.mark.parametrize("method", [name for name in METHODS if name not in LEFT_ALONE])
 def test_with_every_method_a_splat_fades_by_its_weights(method, render):
     """A small, tilted splat, for which filters matter, is compared with the method's twin."""

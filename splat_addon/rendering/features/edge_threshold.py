@@ -33,4 +33,4 @@ def is_present(planning) -> bool:
 
 def parts(planning, p):
     if p.host in LIT_HOSTS:
-        yield Part("edge_threshold")
+        yield Part("edge_threshold", ("printed_sums",) if planning.settings.as_printed else ("fades",))

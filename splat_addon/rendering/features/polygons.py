@@ -15,6 +15,9 @@ from .drawing import LIT_HOSTS, draw_polygons
 NAMES = ("polygons", "polygon_plane", "polygon_material")
 VALUES = {"contact": ("float", lambda tile: tile.view.contact)}
 
+#: Minimum cosine between the normals of splats and polygons of the same surface; and as printed, of any.
+SAME_SURFACE, ANY_SURFACE = 0.7, -2.0
+
 COLOR = Texture("polygon_color", is_multisampled=True)
 NORMAL = Texture("polygon_normal", is_multisampled=True)
 MATERIAL = Texture("polygon_material", is_multisampled=True)
@@ -68,7 +71,8 @@ def joined(planning):
     """The parts that blend polygons with the splats' means."""
     if planning.scene.polygons:
         share = "known" if planning.method.spreads else "compared"
-        yield Part("polygons", reads=(COLOR, NORMAL), choices=(("polygon_share", share),))
+        same = (("SAME_SURFACE", repr(ANY_SURFACE if planning.settings.as_printed else SAME_SURFACE)),)
+        yield Part("polygons", reads=(COLOR, NORMAL), choices=(("polygon_share", share),), constants=same)
 
 
 def _drawn(planning):

@@ -152,7 +152,7 @@ def twin_weights(method, axes, camera, shift=(0.0, 0.0), lines=NO_LINES):
         weights, depths = clipped_samples(method, plane, points, pixel, *lines)
         if method == "sprites_printed" and not camera.is_orthographic:
             depths = np.where((depths > 0) & (depths < 2 * NEAR), NEAR, depths)  # 0 in the window by equation 4
-    is_seen = (weights > 0) & (depths >= NEAR) & (depths <= FAR)
+    is_seen = (weights > 0) & (depths >= NEAR)
     return np.where(is_seen, weights, 0.0).reshape(SIZE, SIZE), depths.reshape(SIZE, SIZE)
 
 
