@@ -3,18 +3,24 @@
 printed ratios.
 
 Absolute rates of 2003 to 2007 cannot be compared with those of a processor without a graphics card; the relative cost
-of a choice can. Surfels are our models at several resolutions; none is marked solid, so back faces are drawn.
+of a choice can. Surfels are our models at several resolutions; none is marked solid, so back faces are drawn. Passes
+are switched off by not drawing anything with their programs. Instructions are counted where SPIR-V's tools are
+installed.
 """
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from dataclasses import replace
-from functools import lru_cache
+from functools import lru_cache, partial
+from unittest.mock import patch
 
 from bench.papers.figures import figures
+from bench.papers.instructions import instructions, missing_tools
 from measuring.drawing import draw_in_turn
 from measuring.models import in_view, load, short
-from splat_addon.rendering import Renderer, Settings, open_device
+from measuring.timing import frame, in_turn
+from splat_addon.rendering import Lines, Renderer, Settings, open_device
 from splat_addon.rendering.methods import METHODS
 from splat_addon.sampling import PLAIN, sample_mesh
 
@@ -40,7 +46,8 @@ TABLES = {
         "Phong",
         {
             "Phong": replace(ONE, method="raycast_printed"),
-            "NPR": replace(ONE, method="raycast_printed", shading="toon"),
+            "NPR": replace(ONE, method="raycast_printed", shading="toon", lines=Lines(shallow_angle=0.35)),
+            "NPR without outlines": replace(ONE, method="raycast_printed", shading="toon"),
             "Phong with shadows": replace(ONE, method="raycast_printed", shadow_resolution=512),
             "Phong, each splat lit": replace(ONE, method="raycast_printed", lights_splats=True),
             "Sprites (2003)": replace(ONE, method="sprites"),
@@ -58,6 +65,19 @@ TABLES = {
         "perspective splatting 0.59 to 0.77",
         "As printed, the matrix is made anew for each fragment here; the square of ray casting has more fragments.",
     ),
+    "View-independent paper, table 1": (
+        "ours",
+        {
+            "Ren et al.": replace(ONE, method="ewa_object"),
+            "ours": QUADS,
+            "sprites (Botsch and Kobbelt)": replace(ONE, method="sprites"),
+            "discs of one colour, in place of the squares of Dachsbacher et al.": replace(
+                ONE, method="sprites_unfiltered"
+            ),
+        },
+        "Ren et al. 1.7 to 3.0, sprites 0.5 to 0.6, squares 0.1",
+        "Squares are points for the hardware there; here every splat is triangles.",
+    ),
     "View-independent paper, table 4": (
         "ours",
         {
@@ -69,7 +89,8 @@ TABLES = {
         "Ren's corners took 74 instructions a vertex there; here fragments are what takes time, and his are more.",
     ),
 }
-#: As if a pass were free: printed frames per second with the pass switched off, divided by those with it.
+#: Printed frames per second with a pass switched off, divided by those with it.
+OFF = "visibility", "attributes", "shading"
 PRINTED_OFF = {"ours": "1.7 to 2.1, 1.6 to 1.8, 1.0 to 1.2", "Ren et al.": "1.1 to 1.3, 4.6 to 5.5, 1.0 to 1.1"}
 
 
@@ -77,19 +98,24 @@ def arguments(parser) -> None:
     parser.add_argument("--resolutions", nargs="+", type=int, default=[128, 256], help="of the models' conversion")
     parser.add_argument("--names", nargs="+", default=MODELS, help="files of models that the tables are measured with")
     parser.add_argument("--size", type=int, default=512, help="pixels along each side, as in the papers' first column")
-    parser.add_argument("--only", choices=("figures", "tables"), help="leave the others out")
+    parser.add_argument("--only", choices=("figures", "tables", "instructions"), help="leave the others out")
+    parser.add_argument("--figures", nargs="+", metavar="NAME", help="some of them; others stay as they are")
 
 
 def run(options, report) -> None:
     renderer = Renderer(open_device(options.device))
     report.header(renderer.device, f"{options.size} x {options.size} pixels, medians of {options.turns} turns")
-    if options.only != "tables":
+    if options.only in (None, "figures"):
         for name, caption, pictures, enlarged in figures(renderer, options.models, options.size // 2):
+            if options.figures and name not in options.figures:
+                continue
             columns = 4 if len(pictures) > 4 else 0
             report.picture(name, pictures, columns, enlarged=enlarged, colors=128)
             report.say(f"{name}: {caption}.")
-    if options.only != "figures":
+    if options.only in (None, "tables"):
         _tables(renderer, options, report)
+    if options.only != "figures":
+        _instructions(options, report)
 
 
 def _tables(renderer: Renderer, options, report) -> None:
@@ -102,8 +128,19 @@ def _tables(renderer: Renderer, options, report) -> None:
     about = "Botsch et al. 2005, table 1: splats over a pixel. Printed: 6 to 19 without a filter (as Quads), 7 to 242."
     report.table(["model", "surfels", "pixels", *METHODS], counted, about)
     rows = [row for case in cases for row in _without(renderer, case, options)]
-    about = "View-independent paper, tables 5 and 6: how much quicker without a pass, as if it took no time."
-    report.table(["model", "method", "visibility", "attributes", "shading"], [*rows, *_printed()], about)
+    about = "View-independent paper, tables 5 and 6: how much quicker when nothing is drawn in a pass."
+    report.table(["model", "method", *OFF], [*rows, *_printed()], about)
+
+
+def _instructions(options, report) -> None:
+    """Table 3 of the view-independent paper and the upper half of table 1 of Guennebaud et al. 2006."""
+    if missing := missing_tools():
+        report.say(f"**Skipped: instructions**. Install {' and '.join(missing)} (glslang and SPIRV-Tools).")
+        return
+    shot = _scene(options.models / options.names[0], options.resolutions[0], options.size)
+    rows = [(name, *instructions(*shot, replace(ONE, method=name, shading="flat"))) for name in METHODS]
+    about = "Instructions of each pass, vertex / fragment, in optimised SPIR-V; of one splat, and of one pixel of it."
+    report.table(["method", *OFF], rows, about)
 
 
 @lru_cache(maxsize=None)
@@ -138,18 +175,32 @@ def _count(scene) -> str:
 
 
 def _without(renderer: Renderer, case, options):
-    """The speed-up without a pass, 1 / (1 - the pass's share of the time), for both methods of the paper."""
+    """How much quicker a frame is without each pass, in the same turn, for both methods of the paper."""
     name, resolution = case
     scene, camera = _scene(options.models / name, resolution, options.size)
     for label, method in (("ours", "quad"), ("Ren et al.", "ewa_object")):
-        settings = replace(ONE, method=method, profile=True)
-        passes = min(
-            (renderer.render(scene, camera, settings).stats["passes"] for _ in range(options.turns + 1)),
-            key=lambda one: sum(one.values()),
-        )
-        total = sum(passes.values())
-        shares = (passes[pass_name] / total for pass_name in ("visibility", "attributes", "shading"))
-        yield f"{short(name)} at {resolution}", label, *(f"{1 / (1 - share):.2f}" for share in shares)
+        settings = replace(ONE, method=method)
+        jobs = {off: partial(_drawn_without, renderer, off, scene, camera, settings) for off in ("", *OFF)}
+        drawn = in_turn(jobs, options.turns, frame)
+        yield f"{short(name)} at {resolution}", label, *(f"{drawn.ratio('', off):.2f}" for off in OFF)
+
+
+def _drawn_without(renderer: Renderer, off: str, *shot):
+    with switched_off(renderer.device, off):
+        return renderer.render(*shot)
+
+
+@contextmanager
+def switched_off(device, name: str):
+    """Nothing is drawn with the programs of a pass; its targets are cleared."""
+    draw = device.draw_triangles
+
+    def others(pipeline, *arguments):
+        if pipeline.description.name.partition("_")[0] != name:
+            draw(pipeline, *arguments)
+
+    with patch.object(device, "draw_triangles", others):
+        yield
 
 
 def _printed():

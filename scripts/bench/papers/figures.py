@@ -19,7 +19,7 @@ import trimesh
 from measuring.models import in_view, load
 from splat_addon.quaternions import axes_quaternions
 from splat_addon.reference import render_exact, scenes
-from splat_addon.reference.extremes import sheet
+from splat_addon.reference.extremes import discs, sheet
 from splat_addon.reference.methods import TWINS
 from splat_addon.reference.methods.plane import splat_plane
 from splat_addon.rendering import Camera, Light, Lines, Ramp, Renderer, Scene, Settings, make_polygons
@@ -52,7 +52,7 @@ def figures(renderer: Renderer, models: Path, size: int) -> Iterator[tuple[str, 
 
     yield from _of_2003(draw, model, size)
     yield from _of_2005(draw, model, size)
-    yield from _of_2006(draw, size)
+    yield from _of_2006(draw, renderer.render, size)
     yield from _view_independent(draw, size)
 
 
@@ -91,7 +91,7 @@ def _of_2005(draw: Draw, model, size: int):
     yield "2005-5", "Phong; toon with outlines; a ramp with outlines; all with shadows", shown, 1
 
 
-def _of_2006(draw: Draw, size: int):
+def _of_2006(draw: Draw, draw_frame, size: int):
     board = scenes.checker_plane(60, 360_000, 8, (size, size // 2))
     methods = "quad", "ewa", "homogeneous_printed", "raycast_printed"
     shown = [draw(board, FLAT, method=method) for method in methods]
@@ -99,9 +99,10 @@ def _of_2006(draw: Draw, size: int):
     near = scenes.checker_plane(8, 2_500, 25, (size, size // 2))
     yield "2006-4", "Close: Botsch et al. 2005; the paper's", [draw(near, FLAT, method=m) for m in methods[:1:-1]], 1
     even, bare, weight = half_polygons(size, True), half_polygons(size, False), {"shading": "weight"}
-    ways = (even, {"epsilon": 0.02}), (even, {}), (even, weight), (bare, weight)
+    ways = (even, {}), (even, weight), (bare, weight)
     shown = [draw(half, replace(LIT, method="quad", supersampling=2, **how)) for half, how in ways]
-    caption = "Splats beside polygons: naive; blended; the splats' weights; the weights without splats on edges"
+    shown = [nearest_of_both(draw_frame, even), *shown]
+    caption = "Splats beside polygons: naive, the nearer of both; blended; weights; weights without splats on edges"
     yield "2006-5", caption, shown, 1
     spheres = scenes.transparent_spheres(2_000, size=(size, size))
     layers = (6, False), (3, False), (3, True)
@@ -112,18 +113,22 @@ def _of_2006(draw: Draw, size: int):
 def _view_independent(draw: Draw, size: int):
     wide = size, size // 2
     checker, text = scenes.checker_plane(20, 40_000, 10, wide), scenes.text_board(66_000, 35, wide)
-    ours, ren = {"method": "quad", "supersampling": 2}, {"method": "ewa_object"}
+    ours, ren = {"method": "quad", "multisampling": 4}, {"method": "ewa_object", "as_printed": True}
     shown = [draw(shot, FLAT, **how) for shot in (checker, text) for how in (ours, ren)]
-    yield "view-independent-2", "Checkers and text: 2 x 2 samples; Ren et al.", shown, 1
+    yield "view-independent-2", "Checkers and text: 4 hardware samples; Ren et al. as printed", shown, 1
+    disc = Scene((discs((0.0, -0.55, -1.6), (0.5, 0, 0), (0, 0.13, 1.1), (1.0, 1.0, 1.0)),))
+    camera = Camera.perspective(np.eye(4), 1.2, wide, 0.1, 100)
+    shown = [draw((disc, camera), FLAT, method=method, shading="weight") for method in ("quad", "ewa", "sprites")]
+    yield "view-independent-7", "The weights of a splat in perspective: ours; the affine map; sprites", shown, 1
     textured = scenes.textured_plane(size=(size, size))
     shown = [draw(textured, FLAT, **how) for how in (ours, ren)]
-    yield "view-independent-8", "Textures: 2 x 2 samples; Ren et al.", shown, 1
+    yield "view-independent-8", "Textures, looked up anisotropically: 4 hardware samples; Ren et al.", shown, 1
     flat = Scene((sheet(24, 2.0, 72.0, 3.0),)), Camera.perspective(np.eye(4), 1.0, wide, 0.1, 100)
     shown = [draw(flat, FLAT, method=method) for method in ("quad", "ewa", "sprites")]
     yield "view-independent-9", "Ours; the affine map; sprites", shown, 1
     shown = [draw(text, FLAT, **how) for how in ({"method": "quad"}, ours, ren)]
     truth = render_exact(*text, FLAT, samples=4, pixel_filter="box").color
-    yield "view-independent-10", "No filter; 2 x 2 samples; Ren et al.; the truth", [*shown, truth], 1
+    yield "view-independent-10", "No filter; 4 hardware samples; Ren et al.; the truth", [*shown, truth], 1
 
 
 @cache
@@ -173,6 +178,15 @@ def facing_squares(scene: Scene, camera):
     normals = np.concatenate([surfels.normals, surfels.normals])[:, None].repeat(3, axis=1)
     polygons = make_polygons(places.reshape(-1, 3), triangles, corner_normals=normals)
     return replace(scene, surfels=(), polygons=(polygons,)), camera
+
+
+def nearest_of_both(draw_frame, shot) -> np.ndarray:
+    """The nearer of splats and polygons at each pixel, which nothing blends: what section 5.1 calls naive."""
+    scene, camera = shot
+    settings = replace(LIT, method="quad", outputs=("color", "depth"))
+    alone = replace(scene, polygons=()), replace(scene, surfels=())
+    splats, polygons = (draw_frame(one, camera, settings) for one in alone)
+    return np.where((splats.depth < polygons.depth)[..., None], splats.color, polygons.color)
 
 
 def half_polygons(size: int, has_edge_samples: bool):
