@@ -15,6 +15,8 @@ from dataclasses import replace
 from functools import lru_cache, partial
 from unittest.mock import patch
 
+from scipy import ndimage
+
 from bench.papers.figures import figures
 from bench.papers.instructions import instructions, missing_tools
 from measuring.drawing import draw_in_turn
@@ -23,6 +25,7 @@ from measuring.timing import frame, in_turn
 from splat_addon.rendering import Lines, Renderer, Settings, open_device
 from splat_addon.rendering.methods import METHODS
 from splat_addon.sampling import PLAIN, sample_mesh
+from splat_addon.sampling.options import DEFAULT_SPLAT_SIZE
 
 DEVICES = ("standalone",)
 QUICK = {"resolutions": [64], "size": 64}
@@ -89,6 +92,9 @@ TABLES = {
         "Ren's corners took 74 instructions a vertex there; here fragments are what takes time, and his are more.",
     ),
 }
+#: Half-axis of the surfel quads in figure 6 of the view-independent paper, in H.
+PRINTED_SIZE = 0.5
+SUMMED = "quad", "ewa", "ewa_object", "sprites", "sprites_printed"
 #: Printed frames per second with a pass switched off, divided by those with it.
 OFF = "visibility", "attributes", "shading"
 PRINTED_OFF = {"ours": "1.7 to 2.1, 1.6 to 1.8, 1.0 to 1.2", "Ren et al.": "1.1 to 1.3, 4.6 to 5.5, 1.0 to 1.1"}
@@ -98,7 +104,7 @@ def arguments(parser) -> None:
     parser.add_argument("--resolutions", nargs="+", type=int, default=[128, 256], help="of the models' conversion")
     parser.add_argument("--names", nargs="+", default=MODELS, help="files of models that the tables are measured with")
     parser.add_argument("--size", type=int, default=512, help="pixels along each side, as in the papers' first column")
-    parser.add_argument("--only", choices=("figures", "tables", "instructions"), help="leave the others out")
+    parser.add_argument("--only", choices=("figures", "tables", "sums", "instructions"), help="leave the others out")
     parser.add_argument("--figures", nargs="+", metavar="NAME", help="some of them; others stay as they are")
 
 
@@ -114,7 +120,11 @@ def run(options, report) -> None:
             report.say(f"{name}: {caption}.")
     if options.only in (None, "tables"):
         _tables(renderer, options, report)
-    if options.only != "figures":
+    if options.only in (None, "tables", "sums"):
+        rows = [row for name in options.names for row in _sums(renderer, (name, options.resolutions[0]), options)]
+        about = "View-independent paper, section 4.5: sums of weights well inside the model, as printed."
+        report.table(["model", "half-axis", "method", "mean", "spread over it", "bare"], rows, about)
+    if options.only in (None, "tables", "instructions"):
         _instructions(options, report)
 
 
@@ -172,6 +182,28 @@ def _overdraw(renderer: Renderer, case, options, size: int):
 
 def _count(scene) -> str:
     return f"{sum(len(instance.surfels) for instance in scene.surfels):,}"
+
+
+def _sums(renderer: Renderer, case, options):
+    """How even the sums of weights are, with the printed half-axis of H / 2 and with ours."""
+    name, resolution = case
+    for size in PRINTED_SIZE, DEFAULT_SPLAT_SIZE:
+        chosen = {**PLAIN, "splat_size": size, "reduction": "surfel_normal"}
+        shot = in_view(sample_mesh(load(options.models / name), resolution=resolution, **chosen), options.size)
+        whole = renderer.render(*_scene(options.models / name, resolution, options.size), QUADS).coverage > 0
+        inside = ndimage.binary_erosion(whole, iterations=8)
+        for method in SUMMED:
+            renderer.render(*shot, replace(ONE, method=method, shading="flat", as_printed=True))
+            sums = _weights(renderer, options.size)[inside]
+            measured = f"{sums.mean():.2f}", f"{sums.std() / sums.mean():.3f}", f"{100 * (sums == 0).mean():.1f} %"
+            yield f"{short(name)} at {resolution}", f"{size:g} H", method, *measured
+
+
+def _weights(renderer: Renderer, size: int):
+    """(size, size) sums of weights of the last picture, without its margin."""
+    texture = next(t for (name, *_), t in renderer.resources.textures.items() if name == "gbuffer_color")
+    margin = (texture.size[0] - size) // 2
+    return renderer.device.target([texture]).read(0)[margin : margin + size, margin : margin + size, 3]
 
 
 def _without(renderer: Renderer, case, options):

@@ -19,7 +19,7 @@ import trimesh
 from measuring.models import in_view, load
 from splat_addon.quaternions import axes_quaternions
 from splat_addon.reference import render_exact, scenes
-from splat_addon.reference.extremes import discs, sheet
+from splat_addon.reference.extremes import sheet
 from splat_addon.reference.methods import TWINS
 from splat_addon.reference.methods.plane import splat_plane
 from splat_addon.rendering import Camera, Light, Lines, Ramp, Renderer, Scene, Settings, make_polygons
@@ -116,13 +116,15 @@ def _view_independent(draw: Draw, size: int):
     ours, ren = {"method": "quad", "multisampling": 4}, {"method": "ewa_object", "as_printed": True}
     shown = [draw(shot, FLAT, **how) for shot in (checker, text) for how in (ours, ren)]
     yield "view-independent-2", "Checkers and text: 4 hardware samples; Ren et al. as printed", shown, 1
-    disc = Scene((discs((0.0, -0.55, -1.6), (0.5, 0, 0), (0, 0.13, 1.1), (1.0, 1.0, 1.0)),))
-    camera = Camera.perspective(np.eye(4), 1.2, wide, 0.1, 100)
-    shown = [draw((disc, camera), FLAT, method=method, shading="weight") for method in ("quad", "ewa", "sprites")]
-    yield "view-independent-7", "The weights of a splat in perspective: ours; the affine map; sprites", shown, 1
+    near = splat_plane((0.3, -0.55, -1.6), (0.5, 0, 0), (0, 0.13, 1.1))
+    ways = {"quad": {}, "ewa": {"variance": 1e-9}, "sprites": {}}
+    across, up = np.meshgrid(np.linspace(-0.5, 1.1, size), np.linspace(-1.3, 0.3, size))
+    points, pixel = np.stack([across.ravel(), up.ravel()], axis=1), np.full(2, 1.6 / size)
+    shown = [in_steps(TWINS[name](near, points, pixel, **how)[0].reshape(size, size)) for name, how in ways.items()]
+    yield "view-independent-7", "A splat in perspective: ours; the affine map without a filter; sprites", shown, 1
     textured = scenes.textured_plane(size=(size, size))
     shown = [draw(textured, FLAT, **how) for how in (ours, ren)]
-    yield "view-independent-8", "Textures, looked up anisotropically: 4 hardware samples; Ren et al.", shown, 1
+    yield "view-independent-8", "Textures, looked up anisotropically: 4 hardware samples; Ren et al", shown, 1
     flat = Scene((sheet(24, 2.0, 72.0, 3.0),)), Camera.perspective(np.eye(4), 1.0, wide, 0.1, 100)
     shown = [draw(flat, FLAT, method=method) for method in ("quad", "ewa", "sprites")]
     yield "view-independent-9", "Ours; the affine map; sprites", shown, 1
@@ -144,8 +146,12 @@ def contour(method: str, wide: float, high: float, pixels: int = 5, places: int 
     axis = np.linspace(-pixels, pixels, places) / 100
     points = np.stack([a.ravel() for a in np.meshgrid(axis, axis)], axis=1)
     weights, _ = TWINS[method](plane, points, np.array((0.01, 0.01)))
-    levels = np.ceil(8 * weights / weights.max()).reshape(places, places, 1) / 8
-    return np.repeat(1 - levels, 3, axis=2) ** 2.2
+    return in_steps(weights.reshape(places, places))
+
+
+def in_steps(weights: np.ndarray) -> np.ndarray:
+    """(h, w) weights -> (h, w, 3), in steps of an eighth of the largest."""
+    return np.repeat(1 - np.ceil(8 * weights / weights.max())[..., None] / 8, 3, axis=2) ** 2.2
 
 
 @contextmanager
