@@ -190,12 +190,8 @@ def _sums(renderer: Renderer, case, options):
     for size in PRINTED_SIZE, DEFAULT_SPLAT_SIZE:
         chosen = {**PLAIN, "splat_size": size, "reduction": "surfel_normal"}
         shot = in_view(sample_mesh(load(options.models / name), resolution=resolution, **chosen), options.size)
-        whole = (
-            renderer.render(
-                *_scene(options.models / name, resolution, options.size), replace(QUADS, outputs=("coverage",))
-            ).coverage
-            > 0
-        )
+        covered = replace(QUADS, outputs=("coverage",))
+        whole = renderer.render(*_scene(options.models / name, resolution, options.size), covered).coverage > 0
         inside = ndimage.binary_erosion(whole, iterations=8)
         for method in SUMMED:
             renderer.render(*shot, replace(ONE, method=method, shading="flat", as_printed=True))
