@@ -137,7 +137,7 @@ def test_equation_1_is_the_whole_side_of_the_square_as_printed(render):
 
 
 def test_equation_4_puts_everything_up_to_twice_the_near_plane_at_depth_0_as_printed(render):
-    """With a = f / (f - n) and b = -2 f n / (f - n), (a z + b) / z is below 0 for z < 2 n; a window has no such depths."""
+    """With a = f / (f - n) and b = -2 f n / (f - n), (a z + b) / z is below 0 for z < 2 n, where no window is."""
     near, far, depths = 0.5, 20.0, (0.7, 0.9, 1.5)
     a, b = far / (far - near), -2 * far * near / (far - near)
     window = np.clip([(a * z + b) / z for z in depths], 0, 1)
