@@ -23,6 +23,10 @@ def rgb(values: np.ndarray) -> np.ndarray:
     return values[:3]
 
 
+def rows(values: np.ndarray, first: int, last: int) -> np.ndarray:
+    return values[first:last]
+
+
 def weighted(color: np.ndarray, red: float, green: float, blue: float) -> np.ndarray:
     """The weighted sum of the components: luminance, or their mean."""
     return color[0] * np.float32(red) + color[1] * np.float32(green) + color[2] * np.float32(blue)
@@ -131,6 +135,7 @@ def multiplied(first: np.ndarray, second: np.ndarray) -> np.ndarray:
 FUNCTIONS = {
     "component": component,
     "rgb": rgb,
+    "rows": rows,
     "weighted": weighted,
     "grey": grey,
     "stacked": stacked,

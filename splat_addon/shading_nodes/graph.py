@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from . import colors, curves, images, mixing, numbers, spectra, vectors
+from . import colors, curves, images, mixing, numbers, procedural, spectra, vectors
 
 #: Samples evaluated together: few enough for temporaries to stay in the processor's cache.
 BLOCK = 1 << 13
@@ -20,6 +20,7 @@ FUNCTIONS = {
     **curves.FUNCTIONS,
     **mixing.FUNCTIONS,
     **numbers.FUNCTIONS,
+    **procedural.FUNCTIONS,
     **spectra.FUNCTIONS,
     **vectors.FUNCTIONS,
 }
@@ -79,6 +80,11 @@ class Graph:
         return not self.kinds.isdisjoint(images.LOOKUPS)
 
     @property
+    def is_procedural(self) -> bool:
+        """Whether it may change between neighbouring samples by more than they show."""
+        return not self.kinds.isdisjoint(procedural.FUNCTIONS)
+
+    @property
     def is_constant(self) -> bool:
         return not (self.reads_uvs or self.reads_colors or self.looks_up)
 
@@ -98,6 +104,14 @@ class Inputs:
     colors: np.ndarray | None = None
     uv_steps: np.ndarray | None = None
     color_steps: np.ndarray | None = None
+
+    def moved(self, columns: float, rows: float) -> Inputs:
+        """The inputs at places that lie this share of the way to the next sample in the two directions."""
+        arrays = []
+        for values, steps in ((self.uvs, self.uv_steps), (self.colors, self.color_steps)):
+            known = values is not None and steps is not None
+            arrays.append(values + columns * steps[0] + rows * steps[1] if known else values)
+        return Inputs(self.count, *arrays, self.uv_steps, self.color_steps)
 
     def take(self, part: slice) -> Inputs:
         count = len(range(*part.indices(self.count)))
@@ -134,16 +148,31 @@ def _hashable(setting):
 
 
 def evaluate(graph: Graph, inputs: Inputs) -> np.ndarray:
-    """(1 or 3, n) float32 values of the graph's last step; what is no finite number is 0, as in shaders."""
+    """(1 or 3, n) float32 values of the graph's last step; what is no finite number is 0, as in shaders.
+
+    A graph with procedural textures is the mean of four places in the cell of each sample, if its steps are known.
+    """
     result = None
     for start in range(0, max(inputs.count, 1), BLOCK):
         part = slice(start, start + BLOCK)
         with np.errstate(all="ignore"):
-            values = _Run(graph, inputs.take(part)).value(len(graph.steps) - 1, 0)
+            values = _block(graph, inputs.take(part))
         if result is None:
             result = np.empty((3 if values.ndim == 2 else 1, inputs.count), np.float32)
         result[:, part] = values
     return result if np.isfinite(result).all() else np.nan_to_num(result, copy=False, nan=0.0, posinf=0.0, neginf=0.0)
+
+
+#: Where a procedural texture is looked up in the cell around a sample, as shares of the way to the next.
+_PLACES = ((-0.25, -0.25), (0.25, -0.25), (-0.25, 0.25), (0.25, 0.25))
+
+
+def _block(graph: Graph, inputs: Inputs) -> np.ndarray:
+    result = len(graph.steps) - 1
+    is_wide = inputs.uv_steps is not None or inputs.color_steps is not None
+    if not (graph.is_procedural and is_wide):
+        return _Run(graph, inputs).value(result, 0)
+    return sum(_Run(graph, inputs.moved(*place)).value(result, 0) for place in _PLACES) / np.float32(len(_PLACES))
 
 
 def constant_value(graph: Graph) -> tuple[float, ...]:

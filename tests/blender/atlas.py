@@ -73,10 +73,11 @@ class Chain:
         self.tree.links.new(socket, self.end.inputs["Color"])
 
 
-def compared(builds: dict, tmp_path) -> dict[str, SimpleNamespace]:
+def compared(builds: dict, tmp_path, is_filtered: bool = True) -> dict[str, SimpleNamespace]:
     """name -> cycles, ours: (SIDE, SIDE, 3), and db: their PSNR over the range of Cycles' values.
 
     builds: name -> function of a `Chain` that returns the socket to show.
+    is_filtered: whether ours are means over pixels.
     """
     chains = []
     for name, build in builds.items():
@@ -84,7 +85,7 @@ def compared(builds: dict, tmp_path) -> dict[str, SimpleNamespace]:
         chains[-1].ends_in(build(chains[-1]))
     square = _squares([chain.material for chain in chains])
     bpy.context.view_layer.update()
-    pictures = _by_cycles(len(chains), tmp_path / "atlas.exr"), _by_surfels(square, len(chains))
+    pictures = _by_cycles(len(chains), tmp_path / "atlas.exr"), _by_surfels(square, len(chains), is_filtered)
     return {name: _result(*(picture[k] for picture in pictures)) for k, name in enumerate(builds)}
 
 
@@ -143,7 +144,7 @@ def _by_cycles(count: int, path) -> np.ndarray:
     return pixels.swapaxes(1, 2).reshape(-1, SIDE, SIDE, 3)[:count]
 
 
-def _by_surfels(square: bpy.types.Object, count: int) -> np.ndarray:
+def _by_surfels(square: bpy.types.Object, count: int, is_filtered: bool) -> np.ndarray:
     evaluated = square.evaluated_get(bpy.context.evaluated_depsgraph_get())
     mesh = read_mesh(evaluated, evaluated.data).triangles
     at = (np.arange(SIDE, dtype=np.float32) + 0.5) / SIDE
@@ -161,6 +162,8 @@ def _by_surfels(square: bpy.types.Object, count: int) -> np.ndarray:
 
     uvs, uv_steps = over_squares(mesh.corner_uvs)
     colors, color_steps = over_squares(mesh.corner_colors)
+    if not is_filtered:
+        uv_steps = color_steps = None
     materials = np.repeat(np.arange(count), SIDE * SIDE)
     total = len(materials)
     sampler = MaterialSampler(mesh.surfaces)

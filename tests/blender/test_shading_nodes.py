@@ -13,7 +13,7 @@ from splat_addon.shading_nodes import numbers, vectors
 from splat_addon.shading_nodes.colors import hue_saturation
 from splat_addon.shading_nodes.mixing import BLENDS
 
-from .atlas import Chain, compared
+from .atlas import SIDE, Chain, compared
 
 
 def builds() -> dict:
@@ -160,6 +160,88 @@ def test_each_node_has_the_values_of_cycles(tmp_path):
     print({name: round(result.db) for name, result in results.items()})
     wrong = {name: round(result.db) for name, result in results.items() if result.db < 38}
     assert wrong == {}
+
+
+def procedural() -> dict:
+    def texture(kind, output=0, scale=3.0, **settings):
+        """A texture over the square, with inputs that are none of its defaults; those of settings are properties."""
+        given = {"Scale": scale, "W": 0.37, **_GIVEN.get(kind, {})}
+
+        def build(c):
+            node = c.add(f"Tex{kind}", **settings)
+            sockets = {socket.identifier: socket for socket in node.inputs if socket.enabled}
+            for name in given.keys() & sockets.keys():
+                sockets[name].default_value = given[name]
+            moved = c.add("Mapping", {"Vector": c.uv, "Location": (-0.3, 0.2, 0.13), "Rotation": (0.4, 0.3, 0.2)})
+            if kind == "WhiteNoise":  # its numbers depend on the last bit of each coordinate
+                moved = c.add("VectorMath", {"Vector": moved.outputs[0], "Vector_001": (0.25,) * 3}, operation="SNAP")
+            if "Vector" in sockets:
+                c.tree.links.new(moved.outputs[0], sockets["Vector"])
+            return node.outputs[output]
+
+        return build
+
+    found = {
+        "checker": texture("Checker"),
+        "checker factor": texture("Checker", "Fac"),
+        "brick": texture("Brick", offset_frequency=3, squash_frequency=2, squash=0.7),
+        "brick factor": texture("Brick", "Fac"),
+        "magic": texture("Magic", turbulence_depth=10),
+        "magic factor": texture("Magic", "Fac", turbulence_depth=2),
+        "wave rings": texture("Wave", wave_type="RINGS", rings_direction="SPHERICAL", wave_profile="TRI"),
+    }
+    for kind in ("LINEAR", "QUADRATIC", "EASING", "DIAGONAL", "SPHERICAL", "QUADRATIC_SPHERE", "RADIAL"):
+        found[f"gradient {kind}"] = texture("Gradient", gradient_type=kind)
+    for direction, profile in (("X", "SIN"), ("Y", "SAW"), ("Z", "TRI"), ("DIAGONAL", "SIN")):
+        found[f"wave {direction}"] = texture("Wave", bands_direction=direction, wave_profile=profile, scale=1.0)
+    for dimensions in ("1D", "2D", "3D", "4D"):
+        found[f"white noise {dimensions}"] = texture("WhiteNoise", "Color", noise_dimensions=dimensions)
+        found[f"noise {dimensions}"] = texture("Noise", "Fac", noise_dimensions=dimensions)
+        found[f"noise color {dimensions}"] = texture("Noise", "Color", noise_dimensions=dimensions, normalize=False)
+    for kind in ("MULTIFRACTAL", "RIDGED_MULTIFRACTAL", "HYBRID_MULTIFRACTAL", "HETERO_TERRAIN"):
+        found[f"noise {kind}"] = texture("Noise", noise_type=kind)
+    for dimensions in ("1D", "2D", "3D", "4D"):
+        for feature in ("F1", "F2", "SMOOTH_F1", "DISTANCE_TO_EDGE", "N_SPHERE_RADIUS"):
+            output = "Radius" if feature == "N_SPHERE_RADIUS" else "Distance"
+            how = {"voronoi_dimensions": dimensions, "feature": feature}
+            found[f"voronoi {dimensions} {feature}"] = texture("Voronoi", output, **how)
+        found[f"voronoi color {dimensions}"] = texture("Voronoi", "Color", voronoi_dimensions=dimensions)
+    for metric in ("MANHATTAN", "CHEBYCHEV", "MINKOWSKI"):
+        found[f"voronoi {metric}"] = texture("Voronoi", distance=metric, normalize=True, feature="F2")
+    found["voronoi position"] = texture("Voronoi", "Position", feature="SMOOTH_F1")
+    found["voronoi edge"] = texture("Voronoi", feature="DISTANCE_TO_EDGE", normalize=True)
+    for kind in ("2D", "3D"):
+        for output in ("Value", "Phase", "Intensity"):
+            found[f"gabor {kind} {output}"] = texture("Gabor", output, gabor_type=kind)
+    return found
+
+
+#: texture -> values of its inputs
+_GIVEN = {
+    "Checker": {"Color1": (0.9, 0.2, 0.1, 1), "Color2": (0.1, 0.3, 0.8, 1)},
+    "Brick": {"Mortar Smooth": 0.4, "Mortar Size": 0.08, "Bias": 0.1, "Color1": (0.9, 0.2, 0.1, 1), "Scale": 5.0},
+    "Magic": {"Distortion": 1.4},
+    "Wave": {"Distortion": 1.3, "Detail": 1.5, "Detail Roughness": 0.4, "Detail Scale": 1.2, "Phase Offset": 0.3},
+    "Noise": {"Detail": 2.4, "Roughness": 0.6, "Lacunarity": 2.2, "Distortion": 0.4, "Offset": 0.3, "Gain": 1.2},
+    "Voronoi": {"Detail": 1.5, "Roughness": 0.6, "Lacunarity": 2.2, "Smoothness": 0.6, "Exponent": 0.8},
+    "Gabor": {"Frequency": 2.3, "Anisotropy": 0.6, "Orientation 2D": 0.7, "Orientation 3D": (0.4, 0.5, 0.7)},
+}
+
+
+def test_each_procedural_texture_has_the_values_of_cycles(tmp_path):
+    results = compared(procedural(), tmp_path, is_filtered=False)
+    wrong = {name: round(result.db) for name, result in results.items() if result.db < 32}
+    assert wrong == {}
+
+
+def test_a_checker_finer_than_the_pixels_is_averaged(tmp_path):
+    """Four checks lie in each pixel, two of them black."""
+
+    def fine(c):
+        given = {"Vector": c.uv, "Color1": (1, 1, 1, 1), "Color2": (0, 0, 0, 1), "Scale": 2.0 * SIDE}
+        return c.add("TexChecker", given).outputs[0]
+
+    assert np.allclose(compared({"fine": fine}, tmp_path)["fine"].ours, 0.5)
 
 
 @pytest.fixture
