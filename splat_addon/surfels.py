@@ -48,6 +48,8 @@ OPTIONAL_LAYOUT = {
     "blend_depth": (1, np.float32, 1.0),
     "lift": (1, np.float32, 0.0),
     "hidden_back": (1, np.float32, 0.0),
+    "normal_along_x": (2, np.int16, 0),
+    "normal_along_y": (2, np.int16, 0),
 }
 
 #: Minimum alpha of an opaque surfel: filtering an image of ones can leave alpha slightly below 1.
@@ -126,6 +128,8 @@ class Surfels(Shape):
         units of the longer half-axis; None: nowhere.
     hidden_back: (N,) float32, 0 to 1, the share of the splat's back that is the other side of a card, which has surfels
         of its own: an opaque splat whose back is all hidden is not drawn from behind; None: 0.
+    normal_along_x, normal_along_y: (N, 2) int16, change of `normals` from the centre to the end of the local x and y
+        half-axis, packed by `normal_fields` into 4 bytes each; None: none.
 
     Raises ValueError with one sentence for a wrong shape, a non-finite or an out-of-range value;
     `valid_surfels` drops and counts such rows instead.
@@ -145,6 +149,8 @@ class Surfels(Shape):
     blend_depth: np.ndarray | None = None
     lift: np.ndarray | None = None
     hidden_back: np.ndarray | None = None
+    normal_along_x: np.ndarray | None = None
+    normal_along_y: np.ndarray | None = None
 
     def __post_init__(self):
         arrays = _shaped(self.arrays())
@@ -188,6 +194,11 @@ class Surfels(Shape):
     def is_clipped(self) -> bool:
         """Whether any surfel may be cut by a clip line."""
         return self.clip_line is not None or self.clip_line_2 is not None
+
+    @property
+    def normals_change(self) -> bool:
+        """Whether any shading normals may change over their surfels."""
+        return self.normal_along_x is not None or self.normal_along_y is not None
 
     def is_cut(self) -> np.ndarray:
         """(n,) bool: which surfels a clip line actually cuts."""

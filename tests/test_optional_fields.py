@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from splat_addon.interchange import joined, read_ply, transformed, write_ply
+from splat_addon.normal_fields import NORMAL_FIELDS
 from splat_addon.surfels import OPTIONAL_LAYOUT, Surfels, concatenate, valid_surfels
 
 SHAPES = {name: (columns,) if columns > 1 else () for name, (columns, _, _) in OPTIONAL_LAYOUT.items()}
@@ -49,6 +50,8 @@ def test_a_wrong_shape_is_named(name):
 
 def test_a_value_that_is_not_finite_is_refused_or_dropped_with_its_row(name):
     given = arrays(5, name)
+    if name in NORMAL_FIELDS:
+        return  # any 16-bit number is a change
     given[name][2] = np.nan if OPTIONAL_LAYOUT[name][1] == np.float32 else -1
     with pytest.raises(ValueError, match=f"1 of 5 surfels have unusable {name}, first row 2"):
         Surfels(**given)
@@ -72,7 +75,8 @@ def test_sets_are_joined_with_the_default_where_only_some_have_a_field(name):
 
 def test_files_and_transforms_keep_them(name, tmp_path):
     surfels = Surfels(**arrays(4, name))
-    move = np.diag([1.0, 2.0, 3.0, 1.0])
+    # stretching turns normals, and changes of theirs with them
+    move = np.diag([2.0, 2.0, 2.0, 1.0] if name in NORMAL_FIELDS else [1.0, 2.0, 3.0, 1.0])
     write_ply(tmp_path / "a.ply", joined([transformed(surfels, move)]))
     read = read_ply(tmp_path / "a.ply")
     assert getattr(read, name).tobytes() == getattr(surfels, name).tobytes()

@@ -3,7 +3,7 @@
 
 #part gbuffer
 void depth_in_normals_add(inout Fragment f) {
-  gbuffer_normal = vec4(normal, f.depth) * f.weight;
+  gbuffer_normal = vec4(f.normal, f.depth) * f.weight;
 }
 
 #part mean_surface

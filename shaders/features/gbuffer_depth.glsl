@@ -4,7 +4,7 @@
 
 #part gbuffer
 void gbuffer_depth_add(inout Fragment f) {
-  gbuffer_normal = vec4(normal, f.lift) * f.weight;
+  gbuffer_normal = vec4(f.normal, f.lift) * f.weight;
   gbuffer_depth.xy = vec2(f.depth, 1.0) * f.weight;
 }
 

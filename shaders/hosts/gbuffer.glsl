@@ -9,11 +9,12 @@ struct Fragment {
   float depth;
   float opacity;  // weight factor of colours
   float lift;     // of the smooth surface above it, where shadows ask for it
+  vec3 normal;    // for shading
 };
 
 #parts
 void add_to_sums(vec3 color, float weight, float depth) {
-  Fragment f = Fragment(color, weight, depth, 1.0, 0.0);
+  Fragment f = Fragment(color, weight, depth, 1.0, 0.0, normal);
   #hook weigh(f)
   #hook add(f)
 }

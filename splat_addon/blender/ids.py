@@ -107,6 +107,8 @@ POINT_ATTRIBUTES = {
     "blend_depth": PointAttribute("blend_depth", "FLOAT", "value", 1),
     "lift": PointAttribute("lift", "FLOAT", "value", 1),
     "hidden_back": PointAttribute("hidden_back", "FLOAT", "value", 1),
+    "normal_along_x": PointAttribute("normal_along_x", "INT16_2D", "value", 2),
+    "normal_along_y": PointAttribute("normal_along_y", "INT16_2D", "value", 2),
 }
 
 #: The position that belongs to each surfel's frame. Blender's edit mode, Apply, Mirror and Join move positions alone;

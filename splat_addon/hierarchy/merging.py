@@ -13,6 +13,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..large_surfels import BLEND_STEPS, STEPS_OF_SAMPLES
+from ..normal_fields import fields_of
 from ..quaternions import axes_quaternions
 from ..surfels import Surfels
 from .bounds import Frame, bounds
@@ -48,6 +49,10 @@ def merged(children: Nodes, cell: float) -> Nodes:
     values = {name: total(children[name] * shares) for name in (*MEANS, "lift") if name in children}
     if "roughness" in children:
         values["roughness"] = _roughness(children["roughness"], shares, length)
+    if "changes" in children:
+        axes = frame.first * frame.longest, frame.second * frame.shortest
+        changes = np.concatenate(_changes(children, shares, offsets, axes, shading))
+        values["changes"] = changes / np.maximum(length, 1e-3)
     if "uv" in children:
         values["uv"] = merged_places(children["uv"], shares, offsets, cell)
     lines = None
@@ -85,6 +90,9 @@ def as_surfels(nodes: Table, like: Surfels) -> Surfels:
         fields |= along_axes(nodes.column("uv"), np.stack(axes))
     if "lines" in nodes.widths:
         fields |= clip_fields(nodes.column("lines"), np.stack(axes))
+    if "changes" in nodes.widths:
+        along = np.split(nodes.column("changes"), 2)
+        fields |= fields_of(nodes.column("shading"), along, (x, y, nodes.column("normals")))
     if "lift" in nodes.widths:
         fields["lift"] = nodes.column("lift")[0] / lengths.max(axis=0)
     if like.blend_depth is not None:
@@ -151,6 +159,20 @@ def _colors(children: Nodes, shares: np.ndarray) -> np.ndarray:
     result = total(np.concatenate([children["colors"][:3] * hiding, hiding[None]]) * shares)
     result[:3] /= result[3]
     result[3] -= np.float32(1e-6)
+    return result
+
+
+def _changes(children: Nodes, shares: np.ndarray, offsets: np.ndarray, axes, shading: np.ndarray) -> list[np.ndarray]:
+    """Two (3, m) changes of the normal along the (3, m) half-axes: the linear field of least squares over the fields of
+    all children, weighted by area. Both axes are principal ones of these areas, so that each is fitted by itself."""
+    own, away = np.split(children["changes"], 2), children["shading"] - for_children(shading)
+    result = []
+    for axis in axes:
+        square = np.einsum("kn,kn->n", axis, axis)
+        along = for_children(axis / np.maximum(square, 1e-37))
+        u, v, d = ((along * of).sum(axis=0) for of in (*children.axes, offsets))
+        moment = total((u * u + v * v + _PER_VARIANCE * d * d) * shares)
+        result.append(total((own[0] * u + own[1] * v + _PER_VARIANCE * away * d) * shares) / np.maximum(moment, 1e-12))
     return result
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..clip_lines import CLIP_FIELDS, are_reflex, unpack_lines
 from ..large_surfels import LARGE_SIZE, LARGE_WEIGHT, are_large
+from ..normal_fields import NORMAL_FIELDS, changes
 from ..quaternions import axes_columns
 from ..surfels import Surfels
 from .families import Families
@@ -42,8 +43,8 @@ class Nodes:
     positions, normals: (3, n), the latter the planes' and unit. first_axis, second_axis: (3, n) half-axis vectors.
     radii: the longer of their lengths. areas: weights. materials: whole numbers. shading: (3, n) unit. colors: (4, n).
     off, uncovered, overhang, spread: bounds, see `bounds`. And of the optional fields that are there: `MEANS`,
-    "roughness", "lift": (1, n), object units, and "uv": (8, n), the coordinates and their two gradients per object
-    unit; "lines" and "cut_off": see `merged_lines`.
+    "roughness", "lift": (1, n), object units, "changes": (6, n), of the shading normal along both half-axes, and "uv":
+    (8, n), the coordinates and their two gradients per object unit; "lines" and "cut_off": see `merged_lines`.
     """
 
     def __init__(self, arrays: dict[str, np.ndarray]):
@@ -193,6 +194,8 @@ def _leaves(surfels: dict[str, np.ndarray]) -> Nodes:
     scales = np.ascontiguousarray(surfels["scales"].T)
     zero, radii = np.zeros_like(scales[0]), np.maximum(*scales)
     values = {name: np.atleast_2d(surfels[name].T) for name in (*MEANS, "roughness") if name in surfels}
+    if any(name in surfels for name in NORMAL_FIELDS):
+        values["changes"] = np.concatenate(changes(surfels, (x, y)))
     if "lift" in surfels:
         values["lift"] = np.atleast_2d(surfels["lift"] * radii)
     if all(name in surfels for name in ("uvs", "uv_along_x", "uv_along_y")):

@@ -9,7 +9,8 @@ from dataclasses import replace
 import numpy as np
 
 from ..clip_lines import CLIP_FIELDS, turned
-from ..quaternions import axes_quaternions
+from ..normal_fields import changes, dot, fields_of
+from ..quaternions import axes_quaternions, quaternion_axes
 from ..surfels import Surfels, concatenate, empty_surfels
 
 
@@ -49,6 +50,9 @@ def transformed(surfels: Surfels, matrix: np.ndarray) -> Surfels:
             uvs["uv_border"] = np.concatenate(
                 [across * cosine + up * sine, (up * cosine - across * sine) * side], axis=1
             )
+    fields = {}
+    if surfels.normals_change:
+        fields = _turned_fields(surfels, linear, angle[:, 0], normals, (x.T, y.T, geometric.T))
     mirrored = np.einsum("ij,ij->i", y, short) < 0
     clips = turned({name: getattr(surfels, name) for name in CLIP_FIELDS}, angle[:, 0], mirrored)
     return replace(
@@ -60,7 +64,24 @@ def transformed(surfels: Surfels, matrix: np.ndarray) -> Surfels:
         normals=normals,
         **uvs,
         **clips,
+        **fields,
     )
+
+
+def _turned_fields(
+    surfels: Surfels, linear: np.ndarray, angle: np.ndarray, normals: np.ndarray, axes: tuple[np.ndarray, ...]
+) -> dict[str, np.ndarray]:
+    """The `NORMAL_FIELDS` under a linear map that turns normals into these. angle: (n,) of the new half-axes among the
+    images of the old ones. axes: (3, n) unit, of the new frame."""
+    old = tuple(axis.astype(np.float64).T for axis in quaternion_axes(surfels.rotations, 2)[:2])
+    inverse = np.linalg.inv(linear).T
+    length = np.linalg.norm(inverse @ surfels.normals.T, axis=0)
+    along_x, along_y = (inverse @ of / length for of in changes(surfels.arrays(), old))
+    cosine, sine = np.cos(angle), np.sin(angle)
+    short = (linear @ old[1]) * (surfels.scales[:, 1] * cosine) - (linear @ old[0]) * (surfels.scales[:, 0] * sine)
+    along = along_x * cosine + along_y * sine, (along_y * cosine - along_x * sine) * np.sign(dot(axes[1], short))
+    fields = fields_of(normals.T, along, axes)
+    return {name: of for name, of in fields.items() if of.any() or getattr(surfels, name) is not None}
 
 
 def parts_of(surfels: Surfels | Sequence[Surfels]) -> list[Surfels]:

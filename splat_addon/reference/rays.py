@@ -14,6 +14,7 @@ import numpy as np
 
 from ..clip_lines import kept
 from ..rendering.scene.camera import Camera
+from .brdf import unit
 from .splats import Splats
 from .textures import point_colors
 
@@ -216,9 +217,12 @@ def average(splats: Splats, grid: RayGrid, contributions) -> Surface:
         colors, shown = attributes[:3, splat], weight * splats.opacity[splat]
         sums[-1] += np.bincount(ray, shown, grid.count)
         _look_textures_up(splats, splat, place, colors)
+        normals = _normals_at(splats, splat, place)
         for total, row in zip(sums[2:5], colors, strict=True):
             total += np.bincount(ray, shown * row, grid.count)
-        for total, row, is_alike in zip(sums[5:-1], attributes[3:], alike[3:], strict=True):
+        for total, row in zip(sums[5:8], normals, strict=True):
+            total += np.bincount(ray, weight * row, grid.count)
+        for total, row, is_alike in zip(sums[8:-1], attributes[6:], alike[6:], strict=True):
             total += weights * row[0] if is_alike else np.bincount(ray, weight * row[splat], grid.count)
     return _averages(sums, count)
 
@@ -231,6 +235,14 @@ def _look_textures_up(splats: Splats, splat: np.ndarray, place: np.ndarray, colo
         beyond = np.maximum(np.einsum("nk,nk->n", q, border) - 1, 0) / np.maximum((border**2).sum(axis=1), 1e-300)
         uvs = splats.uv[splat[at]] + np.einsum("nk,nkc->nc", q - border * beyond[:, None], splats.uv_along[splat[at]])
         colors[:, at] = point_colors(texture, uvs)[:, :3].T
+
+
+def _normals_at(splats: Splats, splat: np.ndarray, place: np.ndarray) -> np.ndarray:
+    """(3, m) unit normals at (m, 2) places of m hit splats."""
+    if not splats.normal_along.any():
+        return splats.normal[splat].T
+    change = np.einsum("nk,nkc->nc", place, splats.normal_along[splat])
+    return unit(splats.normal[splat] + change).T
 
 
 def _averages(sums: np.ndarray, count: np.ndarray) -> Surface:

@@ -11,6 +11,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from ..large_surfels import LARGE_WEIGHT, are_large, grains
+from ..normal_fields import changes, share_of
 from ..rendering.scene import Instance, Placed, Scene
 from ..rendering.scene.camera import Camera
 from ..rendering.scene.finish import PLAIN
@@ -48,6 +49,7 @@ class Splats:
     opacity: (N,), 1 where not is_transparent: (N,) bool, of instances that something shows through.
     is_holdout: (N,) bool, of those that hide and show nothing. offset: (N,) how much farther back than by its radius
     each is moved to find what hides it, world units.
+    normal_along: (N, 2, 3) change of the normal along u and v, as `normal_fields` describes it; 0: none.
     """
 
     center: np.ndarray
@@ -69,6 +71,7 @@ class Splats:
     is_transparent: np.ndarray
     is_holdout: np.ndarray
     offset: np.ndarray
+    normal_along: np.ndarray
 
     def __len__(self) -> int:
         return len(self.center)
@@ -106,9 +109,10 @@ class Splats:
 
     def as_asked(self, settings: Settings) -> Splats:
         """The splats without backs, and moved back further, if the settings say so; as printed, with backs as fronts
-        and without blend depths."""
+        and without blend depths. Of the changes of their normals, the share that is drawn."""
         splats = self.take(np.flatnonzero(~self.is_back)) if settings.culls_backs else self
-        splats = replace(splats, offset=np.full(len(splats), settings.epsilon_length))
+        along = splats.normal_along * share_of(settings.as_printed)
+        splats = replace(splats, offset=np.full(len(splats), settings.epsilon_length), normal_along=along)
         if not settings.as_printed:
             return splats
         return replace(splats, is_back=np.zeros(len(splats), bool), blend=np.full(len(splats), np.inf))
@@ -124,7 +128,7 @@ def eye_splats(scene: Scene, camera: Camera) -> Splats:
     if not parts:
         vectors, flags = np.zeros((6, 0, 3)), np.zeros((4, 0), bool)
         own = flags[0], np.zeros(0, object), *_no_uvs(0), np.zeros((0, 2, 3)), flags[1]
-        rest = *own, *np.zeros((2, 0)), *flags[2:], np.zeros(0)
+        rest = *own, *np.zeros((2, 0)), *flags[2:], np.zeros(0), np.zeros((0, 2, 3))
         return Splats(*vectors, np.zeros((0, 10 + len(PLAIN.numbers) * has_finish(scene))), *rest)
     return Splats(*(np.concatenate([getattr(part, f.name) for part in parts]) for f in fields(Splats)))
 
@@ -142,8 +146,9 @@ def _instance_splats(instance: Instance, camera: Camera, with_finish: bool) -> S
     # Mirrored objects turn u x v inside out.
     orientation = -1 if np.linalg.det(linear) < 0 else 1
     cosine = _outward_cosine(orientation * plane, center, camera)
-    outward = orientation * _outward_normals(surfels) @ _cofactors(linear).T
-    normal = unit(np.where(cosine < 0, -1, 1)[:, None] * outward)
+    outward, *along = (orientation * of @ _cofactors(linear).T for of in _outward_normals(surfels))
+    side, length = np.where(cosine < 0, -1, 1)[:, None], np.linalg.norm(outward, axis=1, keepdims=True)
+    normal, *normal_along = (side * of / length for of in (outward, *along))
     color = surfels.colors[:, :3].astype(np.float64)
     uvs = _no_uvs(len(surfels))
     if instance.is_textured:
@@ -156,6 +161,7 @@ def _instance_splats(instance: Instance, camera: Camera, with_finish: bool) -> S
         opacity = np.clip(surfels.colors[:, 3].astype(np.float64), 0, 1)
     blend = np.full(count, np.inf) if surfels.blend_depth is None else surfels.blend_depth.astype(np.float64)
     rest = *surfels.clip_lines(), blend, opacity, is_transparent, np.full(count, instance.is_holdout), np.zeros(count)
+    rest = *rest, np.stack(normal_along, axis=1)
     splats = Splats(
         center, u, v, plane, normal, color, _surface(instance, with_finish), cosine < 0, textures, *uvs, *rest
     )
@@ -186,14 +192,16 @@ def _outward_cosine(outward: np.ndarray, center: np.ndarray, camera: Camera) -> 
     return np.divide(dot, lengths, out=np.zeros_like(dot), where=lengths > 0)
 
 
-def _outward_normals(surfels: Surfels) -> np.ndarray:
-    """(N, 3) shading normals on the outward side of the splats' planes, object space.
+def _outward_normals(surfels: Surfels) -> list[np.ndarray]:
+    """(N, 3) shading normals on the outward side of the splats' planes, and their change along both half-axes, object
+    space.
 
     They are turned before the object is placed, as stretching may carry a normal across its plane.
     """
     u, v = (axis.astype(np.float64) for axis in surfels.half_axes())
     normals = surfels.normals.astype(np.float64)
-    return np.where(np.einsum("ij,ij->i", normals, np.cross(u, v))[:, None] < 0, -normals, normals)
+    side = np.where(np.einsum("ij,ij->i", normals, np.cross(u, v)) < 0, -1, 1)[:, None]
+    return [side * normals, *(side * of.T for of in changes(surfels.arrays(), (unit(u).T, unit(v).T)))]
 
 
 def has_finish(scene: Scene) -> bool:

@@ -7,6 +7,7 @@ nothing with the sampling of surfels, with the renderer or with `render_exact` b
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,12 +36,19 @@ class TrianglePicture:
 
 
 def render_triangles(
-    corners: np.ndarray, colors: np.ndarray, camera: Camera, *, samples: int = 8, pixel_filter: str = "gaussian"
+    corners: np.ndarray,
+    colors: np.ndarray,
+    camera: Camera,
+    *,
+    samples: int = 8,
+    pixel_filter: str = "gaussian",
+    shade: Callable[[np.ndarray], np.ndarray] = lambda values: values,
 ) -> TrianglePicture:
     """The picture of triangles by definition.
 
     corners: (T, 3, 3) world space. colors: (T, 3, 3) scene-linear, at the corners. Both sides are seen; of the two
         sides of a card, which are in the same place, the one that faces the viewer.
+    shade: makes (n, 3) colours of what the samples interpolate, such as normals in even light.
     samples: samples x samples rays a pixel, at (i + 0.5) / samples. pixel_filter: a name in `filters.PIXEL_FILTERS`.
 
     A sample is inside where the three barycentric coordinates of the projected triangle are 0 or more (Pineda, "A
@@ -63,6 +71,8 @@ def render_triangles(
         first = np.array([0.0, start * samples])
         shape = (rows + 2 * margin) * samples, columns
         values = _samples(places - first, over_depth, np.asarray(colors, np.float64), shape)
+        hit = values[..., 3] > 0
+        values[hit, :3] = shade(values[hit, :3])
         color[start : start + rows] = resample(values, weights, samples)
         inner = values[margin * samples :, margin * samples :, 3][: rows * samples, : width * samples]
         share[start : start + rows] = inner.reshape(rows, samples, width, samples).mean(axis=(1, 3))

@@ -82,6 +82,8 @@ class SamplingOptions(Density):
         None of these two: as there are clip lines or not.
     lifts: surfels store how high the smooth surface of the corners' normals lies above them (`attributes.lifts`), if it
         does so anywhere.
+    normal_fields: surfels store how their shading normal changes along both half-axes (`normal_fields`), if it does so
+        anywhere, in 8 bytes: coarse surfels are lit as the smooth surface is.
 
     Raises ValueError with one sentence for an unusable option.
     """
@@ -94,6 +96,7 @@ class SamplingOptions(Density):
     fits_blending: bool | None = None
     fits_planes: bool | None = None
     lifts: bool = True
+    normal_fields: bool = False
 
     def __post_init__(self):
         super().__post_init__()

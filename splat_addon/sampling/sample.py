@@ -15,6 +15,7 @@ from functools import partial
 import numpy as np
 
 from ..large_surfels import BLEND_STEPS, LARGE_SIZE, STEPS_OF_LARGE
+from ..normal_fields import NORMAL_FIELDS, turned
 from ..surfels import LAYOUT, OPTIONAL_LAYOUT, Surfels, empty_surfels
 from .attributes.blend_depths import blend_depths
 from .attributes.lifts import edge_bulges, lifts
@@ -186,6 +187,8 @@ class SamplingRun:
             arrays["blend_depth"] = np.empty(total, np.float32)
         if self._bulges is not None:
             arrays["lift"] = np.empty(total, np.float32)  # object units until all half-axes are final
+        if self.options.normal_fields and self.mesh.corner_normals is not None:
+            arrays |= {name: np.empty((total, 2), np.int16) for name in NORMAL_FIELDS}
         half_size = (self.options.splat_size if edge == 1 else LARGE_SIZE * edge) * self.grid.spacing
         of_mesh = self._sampler, self._tangents, self._seams, self._bends, self._bulges
         _fill(SampleFiller(self.mesh, self._coordinates, self.grid, half_size, *of_mesh, arrays), images, report)
@@ -217,7 +220,8 @@ class SamplingRun:
             arrays, gaps, gap_triangles = self._clipped(arrays, images, clipping)
         if self._fits_planes:
             about = inside_triangles(images), self.grid, self._edges.borders.are_closed()
-            arrays = arrays | fit_planes(arrays, rows_of(images), *about, fitting)
+            fitted = fit_planes(arrays, rows_of(images), *about, fitting)
+            arrays = arrays | fitted | turned(arrays, fitted.get("rotations", arrays["rotations"]))
         for edge, are_cards in cards.items():
             of_large.get(edge, arrays)["hidden_back"] = are_cards.astype(np.float32)
         if gaps and cards:
@@ -240,6 +244,7 @@ class SamplingRun:
             arrays = _joined(arrays, *more)
         if "lift" in arrays:
             arrays["lift"] /= np.maximum(*arrays["scales"].T)
+        arrays = {name: array for name, array in arrays.items() if name not in NORMAL_FIELDS or array.any()}
         surfels = Surfels(origin=self.grid.surfel_origin, **arrays)
         keeps_both_sides = self._chosen.merge is None and not small_parts
         report(1.0)

@@ -11,6 +11,7 @@ import pytest
 from scipy import ndimage
 
 from splat_addon.images import Image
+from splat_addon.normal_fields import NORMAL_FIELDS, packed
 from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.extremes import discs
 from splat_addon.reference.metrics import psnr
@@ -185,6 +186,15 @@ def with_cards(scene, camera):
     return replace(shadowed(scene, camera)[0], surfels=(replace(first, shape=cards), *others)), camera
 
 
+def bent(scene, camera):
+    """The scene in light with normals that change over each surfel, by as much as four samples along it."""
+    first, *others = scene.surfels
+    random = np.random.default_rng(7).uniform(-0.2, 0.2, (2, len(first.surfels), 2))
+    fields = {name: packed(change) for name, change in zip(NORMAL_FIELDS, random, strict=True)}
+    changing = replace(first, shape=replace(first.surfels, **fields))
+    return replace(lit(scene, camera)[0], surfels=(changing, *others)), camera
+
+
 def deep(scene, camera):
     """The scene before a parallel camera with a disc 1e5 behind it, which needs linear depth."""
     matrix = camera.matrix_world.copy()
@@ -206,6 +216,7 @@ SCENES = {
     "own_materials": lambda: own_materials(*scenes.torus(count=COUNT, size=SIZE)),
     "holdout": lambda: holed(*scenes.torus(count=COUNT, size=SIZE)),
     "deep": lambda: deep(*scenes.torus(count=COUNT, size=SIZE)),
+    "bent": lambda: bent(*scenes.torus(count=COUNT, size=SIZE)),
     "polygons": lambda: scenes.polygons(count=COUNT, size=SIZE),
     "solid_sphere": lambda: solid(*scenes.sphere(count=COUNT, size=SIZE)),
     "clip_lines": lambda: clipped_iron(SIZE),
@@ -333,6 +344,7 @@ CASES = [
     ("solid_sphere", "quad", {"shading": "flat", "lines": Lines(shallow_angle=0.4)}),
     ("light_linking", "quad", {}),
     ("deep", "quad", {}),
+    *(("bent", method, {}) for method in ("mip", "quad", "homogeneous", "sprites_unfiltered")),
     ("folds", "mip", {"sum_format": "float16"}),
     ("own_materials", "mip", {"storage": "16-bit"}),
     ("holdout", "mip", {}),

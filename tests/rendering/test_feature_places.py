@@ -82,6 +82,7 @@ MEETINGS = {
         ("of what is lit one by one nothing is merged", "features/levels.py"),
         ("samples show the colours that are lit, as flat shading does", "plan/build.py"),
         ("planes are summed where samples are lit", "features/shadows.py"),
+        ("normals change where samples are lit", "features/normal_fields.py"),
     ),
     "materials": (
         ("the one material of all is there where none differ", "hosts/lit_splats.frag.glsl hosts/shaded_sample.glsl"),

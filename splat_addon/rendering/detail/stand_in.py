@@ -9,6 +9,7 @@ import numpy as np
 
 from ...clip_lines import CLIP_FIELDS
 from ...large_surfels import LARGE_WEIGHT, are_large
+from ...normal_fields import NORMAL_FIELDS
 from ...surfels import Surfels
 
 #: Surfels of all stand-ins of a view together.
@@ -23,8 +24,8 @@ _PLACES = 1 << 10
 #: Adding up the areas of more surfels takes longer than a picture may.
 _MOST_BY_AREA = 1 << 18
 
-#: Fields that they do not have: they are whole.
-LEFT_OUT = CLIP_FIELDS
+#: Fields that they do not have: they are whole, and seen too shortly for their normals to change.
+LEFT_OUT = (*CLIP_FIELDS, *NORMAL_FIELDS)
 
 #: Fields that change over a half-axis, or are divided by it.
 _PER_AXIS = ("uv_along_x", "uv_along_y", "uv_border")

@@ -15,6 +15,7 @@ class ShadingModel:
     source: of the model, or "none needed". summary: what it shows.
 
     is_lit: it uses lights, with their shadows and light linking.
+    shows_normals: it uses normals without lights.
     has_material: it uses roughness, metallic, reflectance and emission.
     has_finish: it uses what else a surface has (`scene.finish`).
     has_world: it uses the light of the world.
@@ -29,6 +30,7 @@ class ShadingModel:
     source: str
     summary: str
     is_lit: bool = False
+    shows_normals: bool = False
     has_material: bool = False
     has_finish: bool = False
     has_world: bool = False

@@ -11,4 +11,5 @@ MODEL = ShadingModel(
         "The direction that the surface faces in the world, with -1 to 1 on each axis shown as 0 to 1 of red,"
         " green and blue"
     ),
+    shows_normals=True,
 )

@@ -13,6 +13,7 @@ import numpy as np
 
 from ...clip_lines import CLIP_FIELDS, TURN
 from ...large_surfels import BLEND_STEPS, steps_of
+from ...normal_fields import NORMAL_FIELDS
 from ...quaternions import quaternion_axes
 from ...surfels import HIDDEN, OPAQUE, Surfels
 from ..scene import Finish, Material, Placed
@@ -88,6 +89,24 @@ def pack_lifts(surfels: Surfels, order: np.ndarray) -> np.ndarray:
     if surfels.lift is not None:
         texels[: len(order)] = surfels.lift[order]
     return texels.reshape(rows, SPLATS_PER_ROW // 4, 4)
+
+
+def pack_normal_fields(surfels: Surfels, order: np.ndarray) -> np.ndarray:
+    """(rows, 512, 4) float32 multiples of 1 / 65535: the change of each splat's normal along both half-axes, plus
+    32768; a single row where they have none.
+
+    order: storage order of the surfels.
+    """
+    rows = row_count(len(order)) if surfels.normals_change else 1
+    texels = np.full((rows * SPLATS_PER_ROW, 2, 2), _NO_CHANGE, np.float32)
+    for number, name in enumerate(NORMAL_FIELDS):
+        if getattr(surfels, name) is not None:
+            texels[: len(order), number] += getattr(surfels, name)[order]
+    return (texels / np.float32(TURN - 1)).reshape(rows, SPLATS_PER_ROW, 4)
+
+
+#: What a stored change of 0 is in unsigned numbers.
+_NO_CHANGE = 32768
 
 
 def row_count(count: int) -> int:

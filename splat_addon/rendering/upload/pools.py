@@ -12,7 +12,7 @@ import numpy as np
 from ...surfels import LAYOUT, OPTIONAL_LAYOUT, Surfels, field_values
 from ..scene import Placed
 from ..scene.polygons import Polygons, pack_polygons
-from .packing import pack_clip_lines, pack_lifts, pack_own_materials
+from .packing import pack_clip_lines, pack_lifts, pack_normal_fields, pack_own_materials
 from .stored_order import SPLATS_PER_ROW, stored_order
 
 if TYPE_CHECKING:
@@ -85,6 +85,8 @@ class Pool:
             return self._upload(pack_clip_lines(self._joined, self._order), "RGBA16")
         if sampler == "surfel_lifts":
             return self._upload(pack_lifts(self._joined, self._order))
+        if sampler == "normal_fields":
+            return self._upload(pack_normal_fields(self._joined, self._order), "RGBA16")
         arrays, self.coarse = self._storage.pack(self._joined, self._order)
         for (name, form), texels in zip(self._storage.textures, arrays, strict=True):
             self._textures[name,] = self._upload(texels, form)

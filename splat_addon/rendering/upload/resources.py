@@ -21,7 +21,7 @@ from ..scene.polygons import Polygons, pack_polygon_bumps, pack_polygon_uvs, pac
 from .atlas import FORMAT, make_atlas
 from .cuts import Cuts
 from .loading import JobShare, Loading, Made, NotYet, Packed
-from .packing import pack_clip_lines, pack_lifts, pack_materials, pack_own_materials, pack_uvs
+from .packing import pack_clip_lines, pack_lifts, pack_materials, pack_normal_fields, pack_own_materials, pack_uvs
 from .parts import places_in_parts, stored_parts
 from .pools import Pool
 from .storages import Storage
@@ -128,6 +128,10 @@ class Resources:
     def surfel_lifts(self, surfels: Surfels, levels: Hierarchy | None = None, part: int = 0) -> Texture:
         """How high the smooth surface lies above one part of them, uploaded once."""
         return self._with_levels(surfels, "lifts", (), levels, _packed_lifts)[part]
+
+    def normal_fields(self, surfels: Surfels, levels: Hierarchy | None = None, part: int = 0) -> Texture:
+        """How the normals of one part of them change, uploaded once."""
+        return self._with_levels(surfels, "normal_fields", (), levels, _packed_normal_fields)[part]
 
     def clip_lines(self, surfels: Surfels, levels: Hierarchy | None = None, part: int = 0) -> Texture:
         """The lines of those in one part that are clipped, uploaded once; merged ones' begin in a new row."""
@@ -300,6 +304,10 @@ def _packed_uvs(surfels: Surfels, levels: Hierarchy | None, order: np.ndarray) -
 
 def _packed_lifts(surfels: Surfels, levels: Hierarchy | None, order: np.ndarray) -> Packed:
     return _packed((pack_lifts(some, own) for some, own in stored_parts(surfels, levels, order)), "RGBA32F")
+
+
+def _packed_normal_fields(surfels: Surfels, levels: Hierarchy | None, order: np.ndarray) -> Packed:
+    return _packed((pack_normal_fields(some, own) for some, own in stored_parts(surfels, levels, order)), "RGBA16")
 
 
 def _packed_clip_lines(surfels: Surfels, levels: Hierarchy | None, order: np.ndarray) -> Packed:

@@ -10,6 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...normal_fields import NORMAL_FIELDS, fields_of
+from ...quaternions import axes_columns
 from ..ldc.grid import Grid
 from ..ldc.scan_conversion import Spans, expand
 from ..mesh.triangle_mesh import TriangleMesh, corner_indices, corners_at, crossed, doubled_areas
@@ -96,6 +98,9 @@ class SampleFiller:
         else:
             vectors = self._samples(self._mesh.corner_normals, triangles, weights, line)
             _write_unit(vectors, normals, triangle, out["normals"])
+            if NORMAL_FIELDS[0] in out:
+                steps = axis_steps(out, axis, spacing)
+                self._fill_normal_fields(out, vectors, triangles, triangle, weights, steps)
         if self._bulges is not None:
             of_triangles = self._bulges.take(triangles, axis=1).take(triangle, axis=1)
             out["lift"][...] = lifts(weights.at_samples(line), of_triangles)
@@ -107,6 +112,18 @@ class SampleFiller:
             if self._seams is not None:
                 at_samples = weights.at_samples(line), weights.changes(steps, triangle)
                 out[BORDER][...] = border_lines(self._seams.take(triangles, axis=0).take(triangle, axis=0), *at_samples)
+
+    @_quietly
+    def _fill_normal_fields(self, out, vectors, triangles, triangle, weights: _SpanWeights, steps: np.ndarray):
+        """Write how normals change along the half-axes. vectors: (3, n) normals as interpolated. steps: of
+        `axis_steps`."""
+        corners = _at_corners(self._mesh.corner_normals, triangles)
+        per_step = weights.gradients(corners.swapaxes(0, 1)).take(triangle, axis=2)
+        size = 1 / np.sqrt(_squares(vectors))
+        axes = axes_columns(out["rotations"], 0, 1, 2)
+        along = tuple((per_step[0] * columns + per_step[1] * rows) * size for columns, rows in steps)
+        for name, values in fields_of(out["normals"].T, along, axes).items():
+            out[name][...] = values
 
     @_quietly
     def _paint(

@@ -10,8 +10,9 @@ from __future__ import annotations
 import numpy as np
 
 from ...clip_lines import CLIP_FIELDS, turned
-from ...quaternions import axes_quaternions
-from ...surfels import Surfels
+from ...normal_fields import NORMAL_FIELDS, fields_of
+from ...quaternions import axes_columns, axes_quaternions
+from ...surfels import Surfels, field_values
 from ..mesh.cleaning import usable_triangles
 from ..mesh.triangle_mesh import TriangleMesh, doubled_areas, gather_corners, triangle_chunks
 from ..options import PLAIN
@@ -85,8 +86,9 @@ class Binding:
         origin = rest.origin + np.where(np.isfinite(shift), shift, 0.0)
         uv_fields = [name for name in ("uv_along_x", "uv_along_y", "uv_border") if getattr(rest, name) is not None]
         clip_fields = [name for name in CLIP_FIELDS if getattr(rest, name) is not None]
-        names = ("positions", "rotations", "scales", "normals", *uv_fields, *clip_fields)
-        out, stretched = {name: np.array(getattr(rest, name)) for name in names}, 0
+        normal_fields = NORMAL_FIELDS if rest.normals_change else ()
+        names = ("positions", "rotations", "scales", "normals", *uv_fields, *clip_fields, *normal_fields)
+        out, stretched = {name: np.array(field_values(rest, name)) for name in names}, 0
         for chunk in triangle_chunks(len(self._triangles)):
             rows, of_run = self._rows(chunk)
             here = {name: array[rows] for name, array in out.items()}
@@ -101,6 +103,12 @@ class Binding:
             here["rotations"][moved] = ellipse.rotations(np.flatnonzero(good))[(np.cumsum(good) - 1)[run]]
             here["scales"][...] = np.where(good[:, None], ellipse.sizes, ellipse.least)[of_run]
             here["normals"][moved] = self._normals(mesh, basis, triangles, rows, of_run).T[moved]
+            if rest.normals_change and mesh.corner_normals is not None:
+                turned_along = self._changes(mesh, chunk, ellipse)
+                axes = axes_columns(here["rotations"], 0, 1, 2)
+                along = [of.take(of_run, axis=1) for of in turned_along]
+                for name, values in fields_of(here["normals"].T, along, axes).items():
+                    here[name][moved] = values[moved]
             if rest.has_uvs:
                 cosine, sine = ellipse.cosine[of_run, None], ellipse.sine[of_run, None]
                 x, y = rest.uv_along_x[rows], rest.uv_along_y[rows]
@@ -147,6 +155,14 @@ class Binding:
         frame, bends = basis.frame().astype(np.float32), self._bends[:, rows]
         added = np.stack([_dot([axis[k].take(of_run) for axis in frame], bends) for k in range(3)])
         return _unit(normals + added, normals)
+
+    def _changes(self, mesh: TriangleMesh, chunk: slice, ellipse: _Ellipse) -> list[np.ndarray]:
+        """Two (3, r) changes of the interpolated normals along the new half-axes of r runs."""
+        first, second, third = _corner_normals(mesh, self._triangles[chunk])
+        edges = second - first, third - first
+        along_x, along_y = ((edges[0] * axis[0, chunk] + edges[1] * axis[1, chunk]) for axis in self._axes)
+        cosine, sine = ellipse.cosine, ellipse.sine
+        return [along_x * cosine + along_y * sine, along_y * cosine - along_x * sine]
 
     def _bends_of(self, mesh: TriangleMesh, surfels: Surfels) -> np.ndarray | None:
         """(3, n) what a normal map adds to each interpolated normal, in the triangle's frame; None if it adds
@@ -252,10 +268,15 @@ def _interpolated(mesh: TriangleMesh, basis: _Basis, triangles, place: np.ndarra
     # clamped into the triangle, as for samples on its outline
     second, third = np.clip(place, 0, 1)
     third = np.minimum(third, 1 - second)
-    corners = np.ascontiguousarray(np.moveaxis(mesh.corner_normals[triangles], 0, 2), np.float32)
+    corners = _corner_normals(mesh, triangles)
     weights = 1 - second - third, second, third
     normals = np.stack([_dot([c[k].take(of_run) for c in corners], weights) for k in range(3)])
     return _unit(normals, own.take(of_run, axis=1))
+
+
+def _corner_normals(mesh: TriangleMesh, triangles: np.ndarray) -> np.ndarray:
+    """(3, 3, r) float32: by corner and component."""
+    return np.ascontiguousarray(np.moveaxis(mesh.corner_normals[triangles], 0, 2), np.float32)
 
 
 def _stretch(p: np.ndarray, q: np.ndarray, sizes: np.ndarray) -> np.ndarray:

@@ -16,10 +16,12 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from ...clip_lines import CLIP_FIELDS
+from ...normal_fields import NORMAL_FIELDS
 from ...quaternions import quaternion_axes
 from ...surfels import LAYOUT
 from ..attributes.blend_depths import LEAST_BLENDING
 from ..attributes.ellipses import ellipse_rotations, ellipse_scales
+from ..attributes.normal_changes import from_normals_per_cell, normals_per_cell
 from ..attributes.texture_mapping import BORDER, UV_FIELDS, from_uv_planes, is_mapped, slips, uv_planes
 from ..ldc.grid import BLOCK
 
@@ -41,8 +43,11 @@ _SPREAD = 2 * math.sqrt(3)
 #: Rounding error of texture coordinates in float32, in cells.
 _ROUNDING = 1e-3
 
-#: Factor of lifts where values are compared: they do not decide what merges.
-_LIFT_SCALE = np.float32(2.0**-60)
+#: What is averaged beside the fields: the changes of normals.
+_CHANGES = "changes per cell"
+
+#: Factor of these where values are compared: they do not decide what merges.
+_SCALED, _NOT_COMPARED = {"lift", _CHANGES}, np.float32(2.0**-60)
 
 #: Maximum number of surface layers over one block that a search considers.
 _LAYERS = 4
@@ -115,7 +120,7 @@ def merge_flat(
         report(0.5 * (1 - len(levels[-1].keys) / len(base.keys)))
         levels.append(_parents(levels[-1], 2 ** (len(levels) - 1), spacing, tolerance))
     parts, error = [], 0.0
-    optional = _averaged(arrays)
+    optional = _averaged(arrays, axes, spacing)
     has_uvs = "uvs" in arrays
     wanted = np.arange(len(levels[-1].keys))
     for level in range(len(levels) - 1, 0, -1):
@@ -125,7 +130,9 @@ def merge_flat(
         discs = nodes.take(np.flatnonzero(alone))
         made, images = _discs(discs, level, spacing), _block(discs.keys)[0] >> 1
         uvs = from_uv_planes(discs.uvs, made, images, spacing) if has_uvs else {}
-        parts.append(made | uvs | _unstacked(discs.colors[:, 4:], optional) | _edge_fields(arrays, made, tolerance))
+        averaged = _unstacked(discs.colors[:, 4:], optional)
+        changes = from_normals_per_cell(averaged.pop(_CHANGES), made, images, spacing)
+        parts.append(made | uvs | averaged | changes | _edge_fields(arrays, made, tolerance))
         error = max(error, float((nodes.errors * _cosines(nodes.planes))[alone].max(initial=0.0)))
         free = np.ones(len(levels[level - 1].keys), bool)
         free[levels[level].children.ravel()] = False
@@ -151,7 +158,7 @@ def _samples(arrays, axes, spacing) -> tuple[_Nodes, np.ndarray]:
         if name in arrays:
             # Samples with clip lines are treated as unlike all others.
             tints[arrays[name][:, 1] > 0] = np.inf
-    colors = np.column_stack([arrays["colors"], *_averaged(arrays).values()])
+    colors = np.column_stack([arrays["colors"], *_averaged(arrays, axes, spacing).values()])
     uvs = uv_planes(arrays, axes, spacing)
     nodes = _Nodes(
         keys, planes, arrays["normals"], colors, arrays["materials"], zeros, zeros, tints, uvs, zeros, zeros[:, None]
@@ -159,11 +166,13 @@ def _samples(arrays, axes, spacing) -> tuple[_Nodes, np.ndarray]:
     return nodes.take(order), order
 
 
-def _averaged(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """The optional fields that merged discs average; any lifts are alike, because normals are compared."""
-    others = (*LAYOUT, *UV_FIELDS, BORDER, *CLIP_FIELDS, "blend_depth")
+def _averaged(arrays: dict[str, np.ndarray], axes: np.ndarray, spacing: float) -> dict[str, np.ndarray]:
+    """What merged discs average: optional fields, and changes of normals per cell. Lifts and changes are alike, because
+    normals are compared."""
+    others = (*LAYOUT, *UV_FIELDS, BORDER, *CLIP_FIELDS, *NORMAL_FIELDS, "blend_depth")
     averaged = {name: array for name, array in arrays.items() if name not in others}
-    return averaged | {"lift": averaged["lift"] * _LIFT_SCALE} if "lift" in averaged else averaged
+    averaged[_CHANGES] = normals_per_cell(arrays, axes, spacing)
+    return averaged | {name: averaged[name] * _NOT_COMPARED for name in _SCALED & averaged.keys()}
 
 
 def _edge_fields(arrays, made, tolerance: Tolerance) -> dict[str, np.ndarray]:
@@ -325,7 +334,7 @@ def _unstacked(columns: np.ndarray, like: dict[str, np.ndarray]) -> dict[str, np
     made, start = {}, 0
     for name, array in like.items():
         width = math.prod(array.shape[1:])
-        values = columns[:, start : start + width] / (_LIFT_SCALE if name == "lift" else 1)
+        values = columns[:, start : start + width] / (_NOT_COMPARED if name in _SCALED else 1)
         made[name] = values.reshape(len(columns), *array.shape[1:]).astype(array.dtype)
         start += width
     return made
