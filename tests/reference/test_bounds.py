@@ -22,7 +22,7 @@ vectors = st.tuples(numbers, numbers, numbers).map(np.array)
 def one_splat(center, u, v) -> Splats:
     rest = np.zeros((3, 1, 3))
     own = np.zeros(1, bool), *_NO_TEXTURE[:-3], np.tile((1.0, 0.0, 1.0), (1, 2, 1)), np.zeros(1, bool), np.ones(1)
-    last = *_NO_TEXTURE[-3:], np.zeros((1, 2, 3))
+    last = *_NO_TEXTURE[-3:], np.zeros(1), np.zeros((1, 2, 3))
     return Splats(center[None], u[None], v[None], np.cross(u, v)[None], *rest, *own, *last)
 
 

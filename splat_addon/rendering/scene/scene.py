@@ -289,6 +289,10 @@ class Scene:
         if self.background is not None:
             object.__setattr__(self, "background", _radiance("background", self.background))
 
+    def __getstate__(self) -> dict[str, object]:
+        """What it is pickled by: its fields alone, not what was found of them, which may refer to code."""
+        return {f.name: getattr(self, f.name) for f in fields(self)}
+
     @property
     def seen_environment(self) -> Environment | None:
         """The environment, if it is the background."""
