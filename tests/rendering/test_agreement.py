@@ -275,8 +275,9 @@ def bumpy(scene, camera):
 
 
 def of_many_finishes(scene, camera):
-    """The scene with another finish on each of its polygons and surfels."""
-    finishes = (Finish(specular_tint=(1.0, 0.3, 0.1)), Finish(coat=0.8), Finish(sheen=0.7))
+    """The scene with another finish on each of its polygons and surfels. The coat is rough: in a sharp highlight, 20
+    times as bright as white, the rounding of normals is more than the tolerance."""
+    finishes = (Finish(specular_tint=(1.0, 0.3, 0.1)), Finish(coat=0.8, coat_roughness=0.3), Finish(sheen=0.7))
     surfels, first, second = (
         replace(i, materials=(replace(i.materials[0], finish=finish, emission=glow),))
         for i, finish, glow in zip(
@@ -486,7 +487,6 @@ def spots(tied):
 
 def assert_few(tied, samples):
     """At most a counted handful of pixels are set; each has `samples` samples."""
-    # a tie at an edge that passes a corner of pixels is seen in two of them, however small the picture
-    allowed = max(TIES * samples * tied.size, 2)
+    allowed = max(TIES * samples * tied.size, 1)
     count = np.count_nonzero(tied)
     assert count <= allowed, f"{count} of {tied.size} pixels differ, not at most {allowed:.0f}"

@@ -96,7 +96,8 @@ def test_what_lies_far_away_changes_neither_light_nor_shadow(kind, render):
     camera = CAMERAS["perspective"]
     without = picture(None)
     for name, at in DIRECTIONS.items():
-        off = np.abs(picture(tuple(np.array(at) * 1e7)) - without).max(axis=2)
+        # beside the line to the sun: on it, its own shadow falls on the ball, as exactly as such places are rounded
+        off = np.abs(picture(tuple(np.array(at) * 1e7 + (50, 0, 0))) - without).max(axis=2)
         # but for pixels on an edge of a shadow
         assert (off > 0.02).mean() < 0.01, name
 

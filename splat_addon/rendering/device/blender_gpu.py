@@ -134,7 +134,7 @@ class _Texture:
         self.size, self.format, self.samples = tuple(size), format, 0
         options = {}
         if data is not None:
-            values = np.ascontiguousarray(data, np.float32)
+            values = np.ascontiguousarray(_whole_steps(data) if format == "RGBA16" else data, np.float32)
             options["data"] = gpu.types.Buffer("FLOAT", values.size, values.ravel())
         try:
             self.handle = gpu.types.GPUTexture(self.size, format=_FORMAT_NAMES.get(format, format), **options)
@@ -143,6 +143,12 @@ class _Texture:
                 f"The graphics device makes no texture of {size[0]:,} x {size[1]:,} {format} ({error}); draw fewer "
                 "surfels or a smaller picture."
             ) from error
+
+
+def _whole_steps(data):
+    """Numbers that become the nearest of 65,535 steps, whether they are rounded or cut off: Blender's own conversion
+    for Vulkan cuts off (`vk_data_conversion.cc`)."""
+    return (np.rint(np.multiply(data, 65535.0)) + 0.25) / 65535
 
 
 class _Target:
