@@ -42,6 +42,30 @@ class Points:
     places: dict[int, np.ndarray] = field(default_factory=dict)
     said: tuple[str, ...] = ()
 
+    def scanners(self) -> np.ndarray | None:
+        """(N, 3) float64 where the scanner of each point stood, NaN where that is unknown; None if no place is known. A
+        place that is far from all points is none: converting programs leave it at 0 and move the points."""
+        scan = self.attributes.get("scan", np.zeros(len(self.positions), np.int64))
+        made, is_known = np.full((len(self.positions), 3), np.nan), False
+        for number, place in self.places.items():
+            rows = np.flatnonzero(scan == number)
+            if len(rows) and _is_near(place, self.positions[rows]):
+                made[rows], is_known = place, True
+        return made if is_known else None
+
+
+#: How many times farther away than the extent of its points a scanner may stand.
+_FARTHEST = 50.0
+
+
+def _is_near(place: np.ndarray, positions: np.ndarray) -> bool:
+    finite = positions[np.isfinite(positions).all(axis=1)]
+    if not len(finite):
+        return False
+    low, high = finite.min(axis=0), finite.max(axis=0)
+    with np.errstate(over="ignore", invalid="ignore"):
+        return bool(np.linalg.norm(place - (low + high) / 2) <= _FARTHEST * np.linalg.norm(high - low))
+
 
 def points(columns: dict[str, np.ndarray], floats: str = "DISPLAY") -> Points:
     """The points in columns of a file. floats: as in `display_color`. Raises ValueError where x, y or z is missing."""

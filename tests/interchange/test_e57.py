@@ -69,7 +69,7 @@ def test_spherical_places_are_turned_and_moved_by_the_pose(read):
     r, a, e = (distance * 1e-4 + 0.5)[good], (azimuth * 1e-4 + 0.5)[good], elevation[good].astype(np.float64)
     x, y, z = r * np.cos(e) * np.cos(a), r * np.cos(e) * np.sin(a), r * np.sin(e)
     assert np.abs(points.positions - np.stack([z + 4e5, x + 5e6, y + 100], axis=1)).max() < 1e-8
-    assert points.places[0].tolist() == [4e5, 5e6, 100]
+    assert points.scanners().tolist() == [[4e5, 5e6, 100]] * good.sum()
     nowhere = f"Passed over {COUNT - good.sum():,} directions in which the scanner found no point"
     assert points.said == (nowhere, "Passed over 1 fields that surfels do not have: rowIndex")
 
@@ -83,7 +83,7 @@ def test_scans_with_other_fields_and_colours_of_other_depths_are_joined(read):
     assert np.array_equal(points.positions, np.concatenate([one, two, three]))
     assert np.array_equal(points.colors[:4], points.colors[4:8]) and points.colors[3].tolist() == [1, 1, 1, 1]
     assert np.isnan(points.colors[8:, 0]).all()
-    assert points.attributes["scan"].tolist() == [0] * 4 + [1] * 4 + [2] * 4 and points.places == {}
+    assert points.attributes["scan"].tolist() == [0] * 4 + [1] * 4 + [2] * 4 and points.scanners() is None
 
 
 def file(**options):

@@ -82,9 +82,17 @@ def test_ptx_has_several_scans_in_common_coordinates_with_their_scanners_places(
     assert np.array_equal(points.positions, np.concatenate([turned, own]))
     assert points.attributes["scan"].tolist() == [0, 0, 0, 1, 1, 1]
     assert points.attributes["intensity"].tolist() == [0.5, 0.25, 1] * 2
-    assert {scan: place.tolist() for scan, place in points.places.items()} == {0: [600000, 800000, 50], 1: [0, 0, 0]}
+    assert points.scanners().tolist() == [[600000, 800000, 50]] * 3 + [[0, 0, 0]] * 3
     assert np.isnan(points.colors[3:, :3]).all() and points.colors[1].tolist() == [1, 0, 0, 1]
     assert "Passed over 2 cells of the scanner's grid that have no point" in points.said
+
+
+def test_a_scanner_that_is_far_from_its_points_is_no_place(read):
+    """Programs that convert other formats write points in common coordinates, and 0 as the place."""
+    far = GRID + np.array([600000, 800000, 50, 0, 0, 0, 0])
+    points = read(ptx_scan(far, 2, np.eye(4)) + ptx_scan(GRID, 2, np.eye(4)))
+    assert np.isnan(points.scanners()[:4]).all() and (points.scanners()[4:] == 0).all()
+    assert read(ptx_scan(far, 2, np.eye(4))).scanners() is None
 
 
 @pytest.mark.parametrize(

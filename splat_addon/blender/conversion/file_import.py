@@ -66,17 +66,21 @@ class FileImport:
         """Surfels in the scene's coordinates; the offset that was taken, the attributes and the notes are kept."""
         self.points = len(points.positions)
         self._offset = offset_for_scan(self._offset, points.positions)
+        scanners = None if self._eye is not None else points.scanners()
         surfels, report = surfels_from_points(
             points.positions - self._offset,
             points.normals,
             points.radii,
             points.colors,
             viewpoint=None if self._eye is None else tuple(self._eye),
+            scanners=None if scanners is None else scanners - self._offset,
             progress=lambda share: self._go_on(_READING + (1 - _READING) * share, told),
             **self._keywords,
         )
         self._attributes, self._rows = points.attributes, report.kept
         self.notes += [*report.notes(), *points.said]
+        if scanners is not None and report.estimated_normals:
+            self.notes.append("Took the places of scanners from the file, so that normals face them")
         return surfels
 
     def place(self, context: bpy.types.Context) -> bpy.types.Object:

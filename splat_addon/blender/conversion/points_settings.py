@@ -43,7 +43,12 @@ class PointsProperties:
         name="Normals Face",
         description="The side to which estimated normals point; existing normals are kept",
         items=(
-            ("OUTWARD", "Outward", "Away from the middle of each connected part, for scans of whole objects"),
+            (
+                "OUTWARD",
+                "Outward",
+                "Away from the middle of each connected part, for scans of whole objects; or towards the scanner, if "
+                "the file says where it stood",
+            ),
             ("CAMERA", "Camera", "Towards the scene's camera, for scans from one place"),
             ("CURSOR", "3D Cursor", "Towards the 3D cursor, for scans from one place"),
         ),

@@ -128,8 +128,12 @@ GERMAN = {
     ),
     "From Scene": "Aus Szene",
     "Automatic": "Automatisch",
-    "Away from the middle of each connected part, for scans of whole objects": (
-        "Weg von der Mitte jedes zusammenhängenden Teils, für Scans ganzer Objekte"
+    (
+        "Away from the middle of each connected part, for scans of whole objects; or towards the scanner, if the file "
+        "says where it stood"
+    ): (
+        "Weg von der Mitte jedes zusammenhängenden Teils, für Scans ganzer Objekte; "
+        "oder zum Scanner hin, wenn die Datei sagt, wo er stand"
     ),
     "Bake Materials": "Materialien backen",
     "Balanced": "Ausgewogen",

@@ -20,7 +20,7 @@ from .creases import CREASE_NEIGHBOURS, clip_fields, find_creases
 from .footprints import tangent_ellipses
 from .neighbours import nearest_neighbours
 from .normals import plane_normals, tangent_frames
-from .orientation import consistent_signs, facing_outward, facing_viewpoint
+from .orientation import consistent_signs, facing_outward, facing_scanners, facing_viewpoint
 from .report import BRIGHT_COLOR, PointsReport
 
 #: Neighbours per point: enough to average out noise, few enough to follow the surface; on a grid these are a little
@@ -58,6 +58,7 @@ def surfels_from_points(
     splat_size: float = DEFAULT_SPLAT_SIZE,
     isolated: str = "drop",
     viewpoint: tuple[float, float, float] | None = None,
+    scanners: np.ndarray | None = None,
     crease_angle: float | None = None,
     progress: Progress | None = None,
 ) -> tuple[Surfels, PointsReport]:
@@ -69,13 +70,14 @@ def surfels_from_points(
         estimated.
     splat_size: half-axis of an estimated splat, in spacings. isolated: a name in `ISOLATED_CHOICES`.
     viewpoint: (3,), object units, where the scanner stood: estimated normals face it; None: they face outward.
+    scanners: (N, 3) where the scanner of each point stood, which estimated normals of the point face; NaN: unknown.
     crease_angle: radians; points near an edge where planes meet at more than this get the normal of their own side and
         end there (`creases`, with its limits); given normals stay. None: no creases are sought.
     progress: called regularly with the finished share, 0 to 1; if it returns False, `SamplingCancelled` is raised.
 
     Raises ValueError with one sentence for wrong shapes or settings, or for too few usable points.
     """
-    given = _checked(positions, normals, radii, colors)
+    given = _checked(positions, normals, radii, colors, scanners)
     _check_settings(neighbours, splat_size, isolated, viewpoint, crease_angle)
     report = PointsReport(len(given["positions"]), kept_isolated=isolated == "keep")
     usable = np.flatnonzero(finite_points(given["positions"]))
@@ -175,6 +177,8 @@ def _normals(given, positions, missing, nearest, viewpoint, progress) -> tuple[n
     else:
         centre = _middle(given["positions"])
         normals *= facing_viewpoint(positions, normals, part, np.asarray(viewpoint, np.float64) - centre)[:, None]
+    if "scanners" in given:
+        normals *= facing_scanners(positions, normals, given["scanners"] - _middle(given["positions"]))[:, None]
     if not missing.all():
         own = np.flatnonzero(~missing)
         normals[own] = _unit(given["normals"][own])
@@ -238,7 +242,7 @@ def _unit(vectors: np.ndarray) -> np.ndarray:
     return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
 
 
-def _checked(positions, normals, radii, colors) -> dict[str, np.ndarray | None]:
+def _checked(positions, normals, radii, colors, scanners) -> dict[str, np.ndarray | None]:
     """The arrays as float64, colours as float32. Raises ValueError for a wrong shape or integer colours."""
     count = len(positions)
     shapes = {
@@ -246,6 +250,7 @@ def _checked(positions, normals, radii, colors) -> dict[str, np.ndarray | None]:
         "normals": (normals, [(count, 3)], np.float64),
         "radii": (radii, [(count,)], np.float64),
         "colors": (colors, [(count, 3), (count, 4)], np.float32),
+        "scanners": (scanners, [(count, 3)], np.float64),
     }
     arrays = {}
     for name, (values, allowed, dtype) in shapes.items():

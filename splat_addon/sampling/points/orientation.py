@@ -72,6 +72,19 @@ def facing_viewpoint(positions: np.ndarray, normals: np.ndarray, part: np.ndarra
     return np.where(np.bincount(part, cosines)[part] < 0, -1, 1).astype(np.int8)
 
 
+#: Cosine below which a surface is so steep to its scanner that noise decides which side is seen.
+_STEEP = 0.1
+
+
+def facing_scanners(positions: np.ndarray, normals: np.ndarray, scanners: np.ndarray) -> np.ndarray:
+    """(N,) int8 signs, so that normals face (N, 3) scanners, which saw no back; 1 where a scanner is NaN, or the
+    surface is steep to it."""
+    towards = scanners - positions
+    with np.errstate(invalid="ignore"):
+        cosines = np.einsum("ij,ij->i", towards, normals) / np.maximum(np.linalg.norm(towards, axis=1), 1e-300)
+        return np.where(cosines < -_STEEP, -1, 1).astype(np.int8)
+
+
 def _edges(neighbours: np.ndarray) -> np.ndarray:
     """(2, E) int32 pairs of neighbours; a pair found from both ends is kept once."""
     count = len(neighbours)

@@ -5,10 +5,13 @@ import bpy
 import numpy as np
 import pytest
 
-from scan_files.formats import las_file
+from scan_files.formats import las_file, ptx_scan
+from splat_addon.blender.conversion.file_import import FileImport
+from splat_addon.blender.conversion.points_settings import PointsProperties
 from splat_addon.blender.geometry.scan_attributes import write_scan_attributes
 from splat_addon.blender.geometry.scene_offset import scene_offset
-from splat_addon.interchange import read_contents
+from splat_addon.interchange import ReadingCancelled, read_contents
+from splat_addon.sampling import SamplingCancelled
 
 FINE = (0.0001, 0.0001, 0.0001)
 ROW = [("X", "<i4"), ("Y", "<i4"), ("Z", "<i4"), ("intensity", "<u2"), ("returns", "u1"), ("class", "u1")]
@@ -83,6 +86,39 @@ def test_what_the_scanner_measured_arrives_as_attributes(imported):
         assert kind == "INT" and np.array_equal(found, values), name
     kind, times = values_of(made.data, "gps_time", np.float32)
     assert kind == "FLOAT" and np.array_equal(made.data["gps_time_start"] + times.astype(float), 3e8 + 0.25 * y)
+
+
+def test_normals_face_the_scanner_that_the_file_names(surfels_of, tmp_path):
+    """From inside, where they would face outward without its place."""
+    random = np.random.default_rng(0)
+    points = random.normal(size=(600, 3))
+    points /= np.linalg.norm(points, axis=1, keepdims=True)
+    matrix = np.eye(4)
+    matrix[:3, 3] = 4e5, 5e6, 0
+    (tmp_path / "scan").write_text(ptx_scan(points, 20, matrix))
+    bpy.ops.import_scene.surfels_ply(filepath=str(tmp_path / "scan"))
+    surfels = surfels_of(bpy.context.object)
+    inward = matrix[:3, 3] - scene_offset(bpy.context.scene) - bpy.context.object.location - surfels.positions
+    assert (np.einsum("ij,ij->i", surfels.normals, inward) > 0.5).all()
+
+
+class Settings(PointsProperties):
+    """The settings of an import as they are by default."""
+
+    facing, neighbours, splat_size, isolated, finds_creases, flatness = "OUTWARD", 16, 1.25, "KEEP", False, 0.25
+
+
+@pytest.mark.parametrize(("stage", "error"), [("Reading 400 points", ReadingCancelled), ("0%", SamplingCancelled)])
+def test_esc_ends_reading_and_converting(stage, error, tmp_path):
+    (tmp_path / "tile").write_bytes(tile(CORNERS[0])[0])
+    work = FileImport(str(tmp_path / "tile"), Settings(), bpy.context, "DISPLAY")
+
+    def press(share):
+        work.is_cancelled |= stage in work.status()
+
+    with pytest.raises(error):
+        work.run(press)
+    assert not bpy.data.meshes and "cancelled" in work.cancelled()
 
 
 def test_attributes_follow_the_points_that_became_surfels():

@@ -31,6 +31,18 @@ def test_two_parts_are_each_outward(sphere_points):
     assert (angles(surfels, np.concatenate([normals, normals])) < 30).all()
 
 
+def test_each_point_faces_its_own_scanner(sphere_points):
+    """The upper half is seen from above, the lower one from inside, and nothing is known of the points around them."""
+    points, _ = sphere_points(2000)
+    scanners = np.where(points[:, 2:] > 0, (0, 0, 5.0), 0.0)
+    scanners[np.abs(points[:, 2]) < 0.4] = np.nan
+    surfels, _ = surfels_from_points(points + 1e4, scanners=scanners + 1e4)
+    towards = scanners - points
+    cosines = np.einsum("ij,ij->i", surfels.normals, towards) / np.linalg.norm(towards, axis=1)
+    assert len(surfels) == 2000 and np.nanmin(cosines) > 0.1
+    assert np.count_nonzero(np.isnan(cosines)) > 500
+
+
 def test_from_a_viewpoint_inside_normals_face_inward(sphere_points):
     points, normals = sphere_points(5000)
     surfels, _ = surfels_from_points(points + 1e4, viewpoint=(1e4, 1e4, 1e4))
