@@ -9,13 +9,22 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import BinaryIO
 
+import numpy as np
+
 try:
     import lazrs
 except ImportError:
     lazrs = None
 
-#: A chunk table has a head of this size, and lazrs keeps this many bytes of each chunk.
-_TABLE_HEAD, _LEAST_CHUNK = 8, 1
+#: The head of a chunk table: its version, and the number of chunks.
+_TABLE_HEAD = 8
+
+#: Where the description of the compression has its items, each a type, a size and a version.
+_ITEMS = 34
+#: Ways to compress: one run without chunks; and in layers, each of whose sizes is at the beginning of a chunk.
+_ONE_RUN, _LAYERED = 1, 3
+#: type of an item -> its layers; of extra bytes, each is one.
+_LAYERS, _EXTRA_BYTES = {10: 9, 11: 1, 12: 2, 13: 1}, 14
 
 
 def decompressor(
@@ -32,7 +41,8 @@ def decompressor(
             "the zip that scripts/build.py makes, or save the file as LAS."
         )
     start = stream.tell()
-    _check_chunk_table(stream, start, size)
+    if int.from_bytes(laszip[:2], "little") != _ONE_RUN:
+        _check_chunks(stream, start, _chunk_table(stream, start, size), laszip, length, total)
     stream.seek(start)
     source = _trusted(lambda: lazrs.LasZipDecompressor(stream, laszip))
     if _trusted(lambda: lazrs.LazVlr(laszip).item_size()) != length:
@@ -46,18 +56,50 @@ def decompressor(
     return read
 
 
-def _check_chunk_table(stream: BinaryIO, start: int, size: int) -> None:
-    """Raise ValueError for a chunk table that is outside the file or claims more chunks than the file has bytes."""
+def _chunk_table(stream: BinaryIO, start: int, size: int) -> int:
+    """Where the table of chunks is. Raises ValueError with a sentence for one that is outside the file or claims more
+    chunks than the file has bytes."""
     table = int.from_bytes(stream.read(8), "little", signed=True)
     if table == -1:  # a writer that cannot go back leaves it at the end
         stream.seek(max(size - 8, 0))
         table = int.from_bytes(stream.read(8), "little", signed=True)
     if start <= table <= size - _TABLE_HEAD:
         stream.seek(table)
-        chunks = int.from_bytes(stream.read(_TABLE_HEAD)[4:], "little")
-        if chunks * _LEAST_CHUNK <= table - start:
-            return
+        if int.from_bytes(stream.read(_TABLE_HEAD)[4:], "little") <= table - start:
+            return table
     raise ValueError("The LAZ file's table of chunks is outside the file or larger than it; it is cut off or damaged.")
+
+
+def _check_chunks(stream: BinaryIO, start: int, table: int, laszip: bytes, length: int, total: int) -> None:
+    """Raise ValueError with a sentence if the chunks do not end where the table says, or have fewer points than the
+    header says. lazrs allocates what the layers' sizes say."""
+    vlr = _trusted(lambda: lazrs.LazVlr(laszip))
+    stream.seek(start)
+    chunks = _trusted(lambda: lazrs.read_chunk_table(stream, vlr))
+    points = sum(points for points, _ in chunks) if vlr.uses_variable_size_chunks() else len(chunks) * vlr.chunk_size()
+    if points < total:
+        raise ValueError(
+            f"The LAZ file says that it has {total:,} points, but its chunks have at most {points:,}; it is cut off or "
+            "damaged."
+        )
+    layers, place = _number_of_layers(laszip), start + 8
+    for number, (_, size) in enumerate(chunks):
+        head = length + 4 + 4 * layers if layers else 0
+        stream.seek(place + length + 4)
+        sizes = np.frombuffer(stream.read(4 * layers).ljust(4 * layers, b"\0"), "<u4")
+        if place + size > table or (layers and head + int(sizes.sum(dtype=np.int64)) != size):
+            raise ValueError(
+                f"Chunk {number + 1:,} of the LAZ file does not have the size that its table says; it is damaged."
+            )
+        place += size
+
+
+def _number_of_layers(laszip: bytes) -> int:
+    """The layers of a chunk; 0 if there are none."""
+    if int.from_bytes(laszip[:2], "little") != _LAYERED:
+        return 0
+    items = np.frombuffer(laszip[_ITEMS : _ITEMS + (len(laszip) - _ITEMS) // 6 * 6], "<u2").reshape(-1, 3)
+    return sum(int(size) if kind == _EXTRA_BYTES else _LAYERS.get(int(kind), 0) for kind, size, _ in items)
 
 
 def _trusted(call: Callable, where: str = "at its first point"):
