@@ -165,6 +165,7 @@ class Renderer:
                 frame = draw(moved, viewers(camera, moved), settings, next(turns), part)
             if number == numbers[-1]:
                 self._was_drawn(scene)
+                frame.stats["texture_bytes"] = texture_bytes(self.device.textures)
             yield frame
 
     def _planned(
@@ -201,7 +202,6 @@ class Renderer:
         stats["pixels_not_finite"] = mended(arrays)
         arrays |= identified.arrays
         stats["milliseconds"] = 1e3 * (perf_counter() - started)
-        stats["texture_bytes"] = texture_bytes(self.device.textures)
         if "position" in settings.outputs:
             arrays["position"] = positions_of(camera, arrays["depth"], (left, bottom))
         return Frame(**{name: arrays.get(name) for name in OUTPUTS}, stats=stats)

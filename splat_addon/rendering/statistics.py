@@ -29,6 +29,7 @@ def new_stats(device: Device, frame_plan: FramePlan, streamed: Streamed) -> dict
         "culled": frame_plan.facts.get("culled", 0),
         "culled_of": frame_plan.facts.get("culled_of", 0),
         "passes": {},
+        "texture_bytes": 0,
     }
 
 

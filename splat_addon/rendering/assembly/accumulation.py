@@ -79,7 +79,7 @@ def sample_camera(camera: Camera, number: int, samples: int) -> Camera:
     narrower by that, so that a picture is as sharp whatever the number of its samples.
     """
     variance = _BOX_VARIANCE if samples > 1 else 0.0
-    moved = replace(_moved(camera, *pixel_offset(number, samples)), sample=number, sample_variance=variance)
+    moved = _moved(camera, *pixel_offset(number, samples)).with_values(sample=number, sample_variance=variance)
     return _through(moved, camera.lens.points(sample_points(1, number)[0, 2:])) if camera.lens else moved
 
 
@@ -154,7 +154,7 @@ def _moved(camera: Camera, x: float, y: float) -> Camera:
     """The camera with its window shifted by pixels."""
     left, right, bottom, top = camera.window
     dx, dy = x * (right - left) / camera.size[0], y * (top - bottom) / camera.size[1]
-    return replace(camera, window=(left + dx, right + dx, bottom + dy, top + dy))
+    return camera.with_values(window=(left + dx, right + dx, bottom + dy, top + dy))
 
 
 def _through(camera: Camera, place: np.ndarray) -> Camera:

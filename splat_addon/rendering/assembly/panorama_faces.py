@@ -222,7 +222,7 @@ def _distance(depth: np.ndarray, camera: Camera, looks: np.ndarray) -> np.ndarra
 _SUMS = ("milliseconds", "splats", "splats_drawn", "polygons", "instances")
 _MAXIMA = (
     *("instances_outside", "instances_degenerate", "instances_hidden", "surfels_coarse", "layers", "culled"),
-    *("culled_of", "texture_bytes", "pixels_not_finite"),
+    *("culled_of", "pixels_not_finite"),
 )
 
 

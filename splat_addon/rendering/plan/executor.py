@@ -490,9 +490,9 @@ class Execution:
             if isinstance(target, Generator):
                 target = yield from target
             tile.repeats.end(p, target)
+            for texture in p.all("updates"):
+                tile.swap(texture)
         self._done(p, target)
-        for texture in p.all("updates"):
-            tile.swap(texture)
         return target
 
     def _repeat(self, loop: Loop, tile: TileContext) -> Generator[Pause, None, None]:

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Self
 
 import numpy as np
@@ -42,7 +41,13 @@ class Windowed:
         left, right, bottom, top = self.window
         step_x, step_y = (right - left) / self.size[0], (top - bottom) / self.size[1]
         window = (left + x * step_x, left + (x + width) * step_x, bottom + y * step_y, bottom + (y + height) * step_y)
-        return replace(self, window=window, size=(width, height))
+        return self.with_values(window=window, size=(int(width), int(height)))
+
+    def with_values(self, **values) -> Self:
+        """A copy with other values of some fields, which follow from valid ones and are not checked again."""
+        made = object.__new__(type(self))
+        made.__dict__.update(self.__dict__ | values)
+        return made
 
 
 def _rigid(matrix_world) -> np.ndarray:
