@@ -26,11 +26,13 @@ from .features.outputs import PIXELS, check_samplers
 from .features.sample_sum import SUM
 from .frame import OUTPUTS, Frame
 from .identity import Identified, nearer
+from .plan.arrivals import check_arrived
 from .plan.build import plan
-from .plan.executor import Execution, TileContext, texture_key
+from .plan.executor import Execution
 from .plan.frame_plan import FramePlan
 from .plan.graph import Pause, Texture
 from .plan.shared import Shared
+from .plan.tile import TileContext, texture_key
 from .read_back import assembled, background, background_pixel, mended, positions_of, read_tile
 from .scene import Scene
 from .scene.camera import Camera
@@ -307,7 +309,7 @@ class Renderer:
         self.resources.cuts.begin_frame()
         self.resources.forget_atlases_but(scene.table.kinds.find(_looked_up))
         if self.resources.loading:
-            TileContext(self.resources, frame_plan, scene, camera, settings, None, shared).check_arrived()
+            check_arrived(TileContext(self.resources, frame_plan, scene, camera, settings, None, shared))
         whole = None
         if frame_plan.tiles != ((0, 0, *camera.size),):
             drawn = camera.cropped(*_drawn((0, 0, *camera.size), frame_plan))

@@ -5,8 +5,9 @@ from __future__ import annotations
 
 from .detail.streamed import Streamed
 from .device import Device
-from .plan.executor import TileContext
 from .plan.frame_plan import FramePlan
+from .plan.tile import TileContext
+from .plan.together import coarse
 
 
 def new_stats(device: Device, frame_plan: FramePlan, streamed: Streamed) -> dict:
@@ -43,5 +44,5 @@ def counted(tile: TileContext) -> dict[str, int]:
         "instances_outside": view.outside,
         "instances_hidden": int(are_hidden.sum()),
         "splats_drawn": int(tile.drawn_counts(view.placed)[~are_hidden].sum()),
-        "surfels_coarse": tile.coarse(view.placed),
+        "surfels_coarse": coarse(tile, view.placed),
     }

@@ -16,7 +16,7 @@ from splat_addon.rendering import Camera, Instance, Light, Material, Scene, Sett
 from splat_addon.rendering.detail import hierarchies
 from splat_addon.rendering.detail.hierarchies import hierarchy_of
 from splat_addon.rendering.methods import METHODS
-from splat_addon.rendering.plan.executor import describe
+from splat_addon.rendering.plan.programs import describe
 from splat_addon.rendering.upload.packing import pack_clip_lines
 from splat_addon.rendering.upload.storages import STORAGES
 from splat_addon.rendering.upload.stored_order import clipped_places, stored_order

@@ -60,7 +60,7 @@ MEETINGS = {
          "features/visibility.py features/shadows.py"),
     ),
     "levels": (
-        ("each view draws its own cut", "plan/executor.py"),
+        ("each view draws its own cut", "plan/cut_choice.py plan/together.py"),
         ("single blocks of an object with levels may be hidden", "features/hidden_objects.py"),
         ("levels have merged surfels, which have a size of their own", "features/merged_size.py"),
     ),
@@ -143,7 +143,7 @@ MEETINGS = {
     ),
     "world": (
         ("a picture of nothing but the world refines too", "features/sample_sum.py"),
-        ("a world that is a picture is drawn where nothing else is", "plan/executor.py"),
+        ("a world that is a picture is drawn where nothing else is", "plan/tile.py"),
     ),
 }  # fmt: skip
 

@@ -29,7 +29,7 @@ from splat_addon.rendering import (
 from splat_addon.rendering.detail.hierarchies import LEAST_SURFELS, hierarchy_before, hierarchy_of, replaced
 from splat_addon.rendering.detail.history import history
 from splat_addon.rendering.methods import METHODS
-from splat_addon.rendering.plan import executor
+from splat_addon.rendering.plan import cut_choice
 from splat_addon.rendering.upload.storages import STORAGES
 from splat_addon.sampling import TriangleMesh
 from splat_addon.surfels import Surfels
@@ -255,8 +255,8 @@ def test_each_view_of_an_object_is_compared_with_its_hierarchy_once(render, monk
     """However many passes draw it: of a small object, comparing takes longer than drawing."""
     scene, camera = far_torus()
     scene, seen = replace(scene, lights=LAMPS["sun"][:1]), []
-    compared = executor.sight
-    monkeypatch.setattr(executor, "sight", lambda *of: seen.append(of[:2]) or compared(*of))
+    compared = cut_choice.sight
+    monkeypatch.setattr(cut_choice, "sight", lambda *of: seen.append(of[:2]) or compared(*of))
     frame = render(scene, camera, replace(SOME, shadow_resolution=64))
     assert len(frame.stats["plan"].facts["levels"]) == 2
     assert len(seen) == len(set(seen)) == 2 * 2

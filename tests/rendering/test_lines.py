@@ -10,8 +10,8 @@ import pytest
 
 from splat_addon.rendering import Camera, Instance, Lines, Renderer, Scene, Settings, look_at, plan
 from splat_addon.rendering.methods import get_method
-from splat_addon.rendering.plan.executor import describe
 from splat_addon.rendering.plan.frame_plan import FILTER_MARGIN
+from splat_addon.rendering.plan.programs import describe
 from splat_addon.sampling import TriangleMesh
 from tests.plain import sample_mesh
 

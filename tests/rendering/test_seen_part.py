@@ -9,7 +9,7 @@ import pytest
 from splat_addon.reference import scenes
 from splat_addon.rendering import Renderer, Scene, Settings, look_at
 from splat_addon.rendering.methods import METHODS
-from splat_addon.rendering.plan.executor import TileContext
+from splat_addon.rendering.plan.tile import TileContext
 from splat_addon.rendering.scene.lines import Lines
 from splat_addon.surfels import valid_surfels
 

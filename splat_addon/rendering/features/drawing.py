@@ -14,12 +14,13 @@ from ..device.interface import Pipeline
 from ..device.interface import Texture as DeviceTexture
 from ..methods.method import RASTERIZERS
 from ..plan.graph import Pass, Pause
+from ..plan.together import batches_of, pool_of, pooled_batches_of
 from ..plan.uniforms import DRAW, std140
 from ..upload.storages import STORAGES, get_storage
 from ..view import DrawItem, Items
 
 if TYPE_CHECKING:
-    from ..plan.executor import TileContext
+    from ..plan.tile import TileContext
     from ..upload.cuts import Cut
 
 #: Triangles of a draw call, after which drawing may pause.
@@ -39,7 +40,7 @@ def _stored(tile: TileContext, placed: DrawItem, sampler: str) -> DeviceTexture:
 
 def pooled(tile: TileContext, placed: DrawItem, sampler: str, *about) -> DeviceTexture | None:
     """The texture of the pool that an object is drawn from; None if it has its own. about: as of `Pool.texture`."""
-    return None if placed.items.places is None else tile.pool(placed.items).texture(sampler, *about)
+    return None if placed.items.places is None else pool_of(tile, placed.items).texture(sampler, *about)
 
 
 def _corners(tile: TileContext, placed: DrawItem) -> DeviceTexture:
@@ -61,7 +62,7 @@ def draw_splats(tile: TileContext, p: Pass, target, items: Items, vertex, *varia
     """
     programs = Programs(tile, p, vertex, *variants)
     yield from _draw_pooled(tile, p, target, items, programs, viewport)
-    for batch in tile.batches(items):
+    for batch in batches_of(tile, items):
         if len(batch) == 1 and batch.step is None:
             yield from draw_parts(tile, p, target, tile.in_parts(batch.item(0)), programs, viewport)
             continue
@@ -100,7 +101,7 @@ def draw_polygons(
     """Draw polygons. Those with holes have a program of their own."""
     programs = Programs(tile, p, vertex, *variants)
     yield from _draw_pooled(tile, p, target, items, programs, viewport)
-    for batch in tile.batches(items):
+    for batch in batches_of(tile, items):
         placed = batch.item(0)
         kinds = {"cut_out": placed.instance.is_cut_out, "bumped": placed.instance.is_bumped}
         more = tuple(kind for kind, is_so in kinds.items() if is_so)
@@ -150,7 +151,7 @@ def _draw_together(tile, p, target, batch: Items, program: Pipeline, which: rang
 
 def _draw_pooled(tile, p, target, items: Items, programs: Programs, viewport) -> Generator[Pause]:
     """Draw those of the items that are in a pool."""
-    for batch, more, most in tile.pooled_batches(items):
+    for batch, more, most in pooled_batches_of(tile, items):
         program = yield from programs.of("together", *more)
         yield from _draw_together(tile, p, target, batch, program, range(most), viewport)
 
