@@ -45,7 +45,9 @@ def builds() -> dict:
         found[f"math {operation}"] = lambda c, o=operation: c.math(
             o, c.number, c.math("MULTIPLY_ADD", c.part("Y"), 2.0, -0.7), 0.4
         )
-    for operation in (*vectors.OPERATIONS, *vectors.SCALED):
+    # Blender 4.5 has not all of them
+    known = bpy.types.ShaderNodeVectorMath.bl_rna.properties["operation"].enum_items.keys()
+    for operation in {*known} & {*vectors.OPERATIONS, *vectors.SCALED}:
         found[f"vector {operation}"] = lambda c, o=operation: vector(c, o)
     for how in ("LINEAR", "STEPPED", "SMOOTHSTEP", "SMOOTHERSTEP"):
         found[f"map range {how}"] = lambda c, h=how: ranged(c, h, "FLOAT")

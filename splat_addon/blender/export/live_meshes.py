@@ -81,11 +81,12 @@ class LiveMesh:
     """One evaluated mesh, with all its places. said: sentences about its materials and its object. bends: whether its
     object has shape keys or modifiers that deform it.
 
-    key: result of `mesh_key` for the evaluation that was read. held: result of `held_slots`. shown: a sampling, and the
-        surfels drawn from it.
+    key: result of `mesh_key` for the evaluation that was read. asked: result of `_asked_of` for it. held: result of
+        `held_slots`. shown: a sampling, and the surfels drawn from it.
     """
 
     key: tuple = ()
+    asked: tuple = ()
     topology: Topology | None = None
     content: ExtractedMesh | None = None
     materials: tuple[Material, ...] = ()
@@ -241,12 +242,17 @@ class LiveMeshes:
         form: how the entry is rendered. override: the material override of this view layer.
         """
         key = *mesh_key(evaluated), override and override.original.session_uid, form.split_group
+        asked = _asked_of(evaluated)
+        first = self._frame.get(key)
+        if first is not None and first.content.asks_owner and first.asked != asked:
+            key = *key, evaluated.original.session_uid
         if key not in self._frame:
             live = self._kept.setdefault(self._lasting_key(evaluated, form.split_group), LiveMesh())
             live.places, live.owner = [], owner.name
-            if live.key != key or self._changed is None or evaluated.data.name_full in self._changed:
+            is_told = self._changed is None or evaluated.data.name_full in self._changed
+            if live.key != key or is_told or (live.content.asks_owner and live.asked != asked):
                 self._read(live, evaluated, form.split_group, override)
-                live.key = key
+                live.key, live.asked = key, asked
             self._frame[key] = live
         return self._frame[key]
 
@@ -352,6 +358,12 @@ class LiveMeshes:
         live.density, live.spacing = density, spacing
         self.counts["sampled"] += 1
         return live.deforming.at(mesh)[0]
+
+
+def _asked_of(evaluated: bpy.types.Object) -> tuple:
+    """What the nodes of a material may ask about an object, in a form that can be compared."""
+    placed = evaluated.matrix_world.copy().freeze()
+    return evaluated.original.session_uid, placed, tuple(evaluated.color), evaluated.pass_index
 
 
 def _deforming(

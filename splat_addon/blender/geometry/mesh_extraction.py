@@ -29,12 +29,14 @@ class ExtractedMesh:
     materials: of the object's slots, as in the file, None for an empty slot.
     unread: inputs of these materials that could not be read.
     unseen: the end of a sentence for each material that covers nothing.
+    asks_owner: whether its materials look different on each object.
     """
 
     triangles: TriangleMesh
     materials: tuple[bpy.types.Material | None, ...]
     unread: tuple[tuple[bpy.types.Material, Unread], ...] = ()
     unseen: tuple[str, ...] = ()
+    asks_owner: bool = False
 
     @property
     def notes(self) -> list[str]:
@@ -121,7 +123,7 @@ def read_mesh(
         rows = [] if indices is None else np.flatnonzero(~np.isin(indices, list(unseen)))
         triangles = triangles.with_triangles(np.array(rows, np.int64))
     said = tuple(f"the material {slots[k].name!r} {why}" for k, why in unseen.items())
-    return ExtractedMesh(triangles, tuple(m and m.original for m in slots), tuple(unread), said)
+    return ExtractedMesh(triangles, tuple(m and m.original for m in slots), tuple(unread), said, layers.asks_owner)
 
 
 class _NoPixels(dict):

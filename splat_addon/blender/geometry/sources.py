@@ -92,7 +92,7 @@ _SURFELS = "Left out {} instance{} of surfels, which are not sampled again"
 def shown_by(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph, read: Reader) -> ShownMeshes:
     """Every mesh that the source shows in the depsgraph; `read` is called once per mesh, however often it is
     instanced."""
-    shown, pieces = ShownMeshes(), {}
+    shown, pieces, owners = ShownMeshes(), {}, {}
     for entry in depsgraph.object_instances:
         if owner_of(entry) != source or not entry.show_self:
             continue
@@ -112,6 +112,9 @@ def shown_by(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph, read: Rea
             shown.skip(_FLATTENED)
             continue
         key = mesh_key(object_)
+        first = owners.setdefault(key, object_.original)
+        if first != object_.original and getattr(getattr(pieces[key], "content", None), "asks_owner", False):
+            key = *key, object_.original.session_uid
         if key not in pieces:
             with readable_mesh(object_) as mesh:
                 is_surfels = has_surfels(mesh) or (not mesh.polygons and shows_as_points(object_.original))

@@ -34,7 +34,7 @@ class MeshLayers:
     """The layers of a mesh that its materials use, without duplicates, in the order of first use.
 
     mesh: None if only images are asked for. owner: the evaluated object that shows the mesh. material: the one that is
-    read. colors: attributes, and names of `DERIVED`.
+    read. asks_owner: whether something that was read depends on the owner. colors: attributes, and names of `DERIVED`.
     """
 
     mesh: bpy.types.Mesh | None
@@ -42,6 +42,7 @@ class MeshLayers:
     colors: list[str] = field(default_factory=list)
     owner: bpy.types.Object | None = None
     material: bpy.types.Material | None = None
+    asks_owner: bool = False
     _images: dict = field(default_factory=dict)
 
     @property

@@ -173,6 +173,7 @@ class GraphReading(Walk):
     def owner(self) -> bpy.types.Object:
         """The object whose material is read. Raises UnreadableError if it is not known."""
         self._asked.append(True)
+        self.layers.asks_owner = True
         if self.layers.owner is None:
             raise UnreadableError("its object")
         return self.layers.owner
