@@ -19,7 +19,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import partial
 
-from bench.representation import points
+from bench.representation import lit, points
 from bench.representation.error import over_grey, picture_error
 from bench.representation.meshes import load_colored, view
 from measuring.models import short
@@ -50,11 +50,12 @@ def arguments(parser) -> None:
     parser.add_argument("--size", type=int, default=384, help="pixels along each side")
     parser.add_argument("--resolution", type=int, nargs="*", default=[256], help="cells along the longest edge")
     parser.add_argument("--pixels", type=float, nargs="*", default=[], help="between surfels in the nearest view, too")
-    parser.add_argument("--model", nargs="+", default=MODELS, help='files among the models, or "plate"')
+    parser.add_argument("--model", nargs="+", default=MODELS, help="files among the models, or a name in meshes.py")
     parser.add_argument("--views", type=int, default=3, choices=(1, 2, 3))
     parser.add_argument("--samples", type=int, default=1, help="pictures whose mean the engine shows; F12 has 16")
     parser.add_argument("--tolerance", type=float, default=1.0, help="Detail Tolerance, in pixels")
     parser.add_argument("--exact", type=int, default=0, help="samples along a pixel of exact pictures; 0 for none")
+    parser.add_argument("--lit", action="store_true", help="measure lit pictures with changing normals instead")
     parser.add_argument("--points", type=int, default=0, help="measure random points of this number instead")
     parser.add_argument("--noise", type=float, nargs="+", default=[0.0], help="of points, in spacings")
     parser.add_argument("--kind", nargs="+", default=list(KINDS), choices=KINDS, help="of exact pictures")
@@ -65,6 +66,9 @@ def run(options, report) -> None:
     exact = f"exact pictures of {options.exact} x {options.exact} samples" if options.exact else "no exact pictures"
     report.header(renderer.device, f"{options.size} x {options.size} pixels; {exact}")
     meshes = {name: load_colored(options.models, name) for name in options.model}
+    if options.lit:
+        report.table(lit.COLUMNS, lit.rows(meshes, renderer, options))
+        return
     if options.points:
         report.table(points.COLUMNS, points.rows(meshes, renderer, options, report))
         return

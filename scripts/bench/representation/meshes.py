@@ -6,6 +6,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import trimesh
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import Delaunay
@@ -20,10 +21,22 @@ CREASE = np.radians(30)
 VIEWS = np.array(((1.2, 0.7, 2.6), (-2.0, 1.1, 0.9), (0.8, -1.4, -1.9)))
 
 
+#: Shapes that are smooth everywhere.
+SMOOTH = {
+    "ball": lambda: trimesh.creation.icosphere(6),
+    "torus": lambda: trimesh.creation.torus(1.0, 0.4, 192, 96),
+    "capsule": lambda: trimesh.creation.capsule(2.0, 0.6, count=[96, 96]),
+}
+
+
 def load_colored(folder: Path, name: str) -> TriangleMesh:
-    """Load a model from the folder, or make the drilled plate; split it at creases and colour it by its normals."""
+    """Load a model from the folder, or make the drilled plate or a smooth shape; split it at creases and colour it by
+    its normals."""
     if name == "plate":
         return colored(*drilled_plate())
+    if name in SMOOTH:
+        shape = SMOOTH[name]()
+        return colored(np.asarray(shape.vertices), np.asarray(shape.faces))
     mesh = load(folder / name)
     return colored(mesh.positions, mesh.triangles)
 

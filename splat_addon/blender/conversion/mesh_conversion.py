@@ -70,6 +70,7 @@ class Choices:
     tolerance: how far from flat, in object units, the surface may be where surfels become larger; 0: only inside flat
         faces; None: all have the same size.
     texture_mapped: whether colours that are a single image are looked up at render time.
+    normal_fields: whether shading normals change over surfels.
     crease_angle: radians, beyond which splats end at edges, get their own blend depth and fit the surface, or None.
     space: "object" or "world": the space whose units lengths are in and in which surfels are evenly spaced.
     join: whether all sources become one, in world units.
@@ -82,6 +83,7 @@ class Choices:
     grazing_angle: float = SamplingOptions.grazing_angle
     tolerance: float | None = None
     texture_mapped: bool = SamplingOptions.texture_mapped
+    normal_fields: bool = SamplingOptions.normal_fields
     crease_angle: float | None = None
     space: str = "object"
     join: bool = False
@@ -282,6 +284,7 @@ def sampling_options(conversion: Conversion) -> dict:
         "tolerance": None if choices.tolerance is None else Tolerance(choices.tolerance),
         "deforms": conversion.deforms,
         "texture_mapped": choices.texture_mapped,
+        "normal_fields": choices.normal_fields,
         "crease_angle": choices.crease_angle,
     }
 

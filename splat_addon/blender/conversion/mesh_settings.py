@@ -121,6 +121,14 @@ class ConversionProperties:
         default=False,
     )
     texture_mapped: texture_mapped_property()
+    normal_fields: BoolProperty(
+        name="Phong Splatting",
+        description=(
+            "Let the shading normal change over each surfel. Surfels that are several pixels large are lit more like "
+            "the curved surface that they stand for, but take slightly more memory"
+        ),
+        default=SamplingOptions.normal_fields,
+    )
     clips_edges: BoolProperty(
         name="End at Edges",
         description=(
@@ -172,6 +180,7 @@ def choices(properties: ConversionProperties) -> Choices:
         grazing_angle=properties.grazing_angle,
         tolerance=_tolerance(properties, density),
         texture_mapped=properties.texture_mapped,
+        normal_fields=properties.normal_fields,
         crease_angle=properties.crease_angle if properties.clips_edges else None,
         space=properties.space.lower(),
         join=properties.join,
@@ -221,6 +230,7 @@ def draw_properties(layout: bpy.types.UILayout, properties: ConversionProperties
         layout.prop(properties, "tolerance")
     layout.prop(properties, "bake_materials")
     layout.prop(properties, "texture_mapped")
+    layout.prop(properties, "normal_fields")
     layout.prop(properties, "clips_edges")
     if properties.clips_edges:
         layout.prop(properties, "crease_angle")

@@ -75,7 +75,7 @@ def follow_shape(made: bpy.types.Object, conversion, depsgraph: bpy.types.Depsgr
     modifier = made.modifiers.new(SHAPE_GROUP, "NODES")
     modifier.node_group, modifier.show_expanded = known_group(_MAKE, _VERSION) or _new_group(), False
     made.modifiers.move(len(made.modifiers) - 1 - _pinned(made), 0)
-    turns = not (surfels.has_uvs or surfels.clip_line is not None)
+    turns = not (surfels.has_uvs or surfels.clip_line is not None or surfels.normals_change)
     for name, value in (("Source", source), ("Vertices", len(mesh.positions)), ("Turns", float(turns))):
         _give(modifier, name, value)
     record_of(made).sources[0].shape = faces_of(source.evaluated_get(depsgraph).data)

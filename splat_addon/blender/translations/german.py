@@ -438,6 +438,13 @@ GERMAN = {
         "Cycles die Materialeingänge backen lassen, die nicht direkt gelesen werden können. Das ist langsam: "
         "Jeder Eingang kann länger dauern als die übrige Umwandlung"
     ),
+    (
+        "Let the shading normal change over each surfel. Surfels that are several pixels large are lit more like "
+        "the curved surface that they stand for, but take slightly more memory"
+    ): (
+        "Die Normale der Schattierung über jedem Surfel ändern. Surfels, die mehrere Pixel groß sind, werden eher "
+        "wie die gekrümmte Fläche beleuchtet, für die sie stehen, brauchen aber etwas mehr Speicher"
+    ),
     ("Let visible surfaces block the world's light from one another. Frames take slightly longer"): (
         "Sichtbare Flächen das Licht der Welt voneinander abhalten lassen. Einzelbilder dauern etwas länger"
     ),
@@ -559,6 +566,7 @@ GERMAN = {
     "Performance": "Leistung",
     "Persistent Data": "Beständige Daten",
     "Phong": "Phong",
+    "Phong Splatting": "Phong-Splatting",
     "Pixels per Surfel": "Pixel pro Surfel",
     "Plan": "Plan",
     "Points": "Punkte",
