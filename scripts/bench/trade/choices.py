@@ -18,6 +18,7 @@ FORMATS = {
     "sample_shading": {False: "", True: "each shaded"},
     "storage": {"float32": "", "16-bit": "16-bit surfels"},
     "sum_format": {"float32": "", "float16": "16-bit sums"},
+    "as_printed": {False: "", True: "as printed"},
     "edge_threshold": {0.0: "", 0.25: "threshold 0.25", 1.0: "threshold 1"},
     "layers": {n: f"{n} layers" if n != YARDSTICK.layers else "" for n in (3, 2, 6, 8)},
     "blends_rest": {True: "", False: "the rest lost"},
@@ -50,14 +51,16 @@ LAYERS = [
     *settings_of(("mip",), layers=(2, 3, 6, 8)),
     *settings_of(("mip",), layers=(3, 6), blends_rest=(False,)),
 ]
-#: Hardware samples, shaded once and each, beside as many of the picture's own, and EWA, whose place they take.
-MULTISAMPLED = [
+#: Hardware samples, shaded once and each, beside as many of the picture's own, and EWA, whose place they take; the
+#: filters as printed.
+OF_PAPERS = [
     YARDSTICK,
     *settings_of(("quad",), supersampling=(2,)),
     *settings_of(("quad",), multisampling=(4,), sample_shading=(False, True)),
-    *settings_of(("ewa", "ewa_object")),
+    *settings_of(("ewa", "ewa_object"), as_printed=(False, True)),
+    *settings_of(("mip", "raycast", "raycast_printed", "sprites", "sprites_printed")),
 ]
-CHOICES = {"methods": METHODS_ALONE, "all": ALL, "layers": LAYERS, "multisampled": MULTISAMPLED}
+CHOICES = {"methods": METHODS_ALONE, "all": ALL, "layers": LAYERS, "papers": OF_PAPERS}
 
 #: The choices shown beside the reference.
 PICTURED = frozenset([*settings_of(EVERY), replace(YARDSTICK, supersampling=2), *LAYERS[-2:]])
