@@ -8,10 +8,12 @@ from __future__ import annotations
 
 import ast
 import hashlib
+import io
 import pickle
 import shutil
 from collections.abc import Callable, Iterator
 from contextlib import suppress
+from dataclasses import fields, is_dataclass
 from functools import cache, wraps
 from pathlib import Path
 
@@ -72,13 +74,29 @@ def write(file: Path, contents: bytes) -> None:
         write_whole(file, contents)
 
 
+class _Contents(pickle.Pickler):
+    """Writes the fields of dataclasses, without what they remember of what was asked of them before."""
+
+    def reducer_override(self, value):
+        if not is_dataclass(value) or isinstance(value, type):
+            return NotImplemented
+        return tuple, ((type(value).__qualname__, *(getattr(value, f.name) for f in fields(value))),)
+
+
+def contents(value) -> bytes:
+    """Bytes that are the same for the same values, whatever was computed from them."""
+    written = io.BytesIO()
+    _Contents(written, protocol=5).dump(value)
+    return written.getvalue()
+
+
 def remembered(function: Callable) -> Callable:
     """`function`, which must be pure and part of the reference, with results cached in a file by the contents of its
     arguments."""
 
     @wraps(function)
     def result(*arguments, **options):
-        key = hashlib.sha256(pickle.dumps((function.__name__, arguments, options), protocol=5)).hexdigest()
+        key = hashlib.sha256(contents((function.__name__, arguments, options))).hexdigest()
         file = folder(f"truths-numpy-{NUMPY}", *dependencies()) / key[:32]
         if file.exists():
             return pickle.loads(file.read_bytes())

@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 from splat_addon.reference import kept
+from splat_addon.reference.extremes import discs
+from splat_addon.rendering import Scene
 
 #: A truth that depends on a description of the scene, and that on a sibling and a table; and what no truth depends on.
 PRODUCT = {
@@ -93,3 +95,10 @@ def test_what_is_written_is_whole_and_leaves_nothing_beside(elsewhere):
         kept.write(elsewhere / "file", contents)
         assert (elsewhere / "file").read_bytes() == contents
     assert [path.name for path in elsewhere.iterdir() if path.is_file()] == ["file"]
+
+
+def test_what_was_computed_from_a_scene_does_not_make_it_another():
+    """A scene remembers functions that it was asked with, which cannot be stored."""
+    one, other, different = (Scene((discs((0, 0, z), (0.1, 0, 0), (0, 0.1, 0)),)) for z in (-2, -2, -3))
+    assert one.table.of_kinds(lambda placed: placed.is_textured).tolist() == [False]
+    assert kept.contents(one) == kept.contents(other) != kept.contents(different)
