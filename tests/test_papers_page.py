@@ -12,7 +12,13 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGE = ROOT / "docs" / "papers.md"
-STATES = "**As printed**", "**Corrected**", "**Surpassed**", "**Not here**"
+STATES = "**As printed**", "**Corrected**", "**Surpassed**", "**Otherwise**", "**Not here**"
+#: What was measured: decibels, shares, or a range of times; and where its command is.
+MEASURED = re.compile(r"\d dB|\d %|\d\.\d+ (?:to|and) \d|takes \d|\d times\b|[1-9] / \d")
+SOURCE = re.compile(
+    r"`python3 scripts/[^`]+`[^|]*?commit [0-9a-f]{7}|\]\(evidence/\w+\.md\)|[Cc]ommand is that of|the row of|"
+    r"has the command|the last test"
+)
 
 #: paper -> (how code names it, its sections, and how many equations, figures and tables it has)
 PAPERS = {
@@ -65,6 +71,12 @@ def test_every_row_says_how_it_is_and_every_equation_names_its_test(paper):
     for item, what, _, how, test in rows(paper):
         assert what and how.startswith(STATES), item
         assert not item.startswith("Equation") or "::" in test, item
+
+
+@pytest.mark.parametrize("paper", PAPERS)
+def test_every_figure_has_its_command_and_commit(paper):
+    """They are in the row, on the page of evidence that it links, or in the row that it refers to."""
+    assert [item for item, _, _, how, _ in rows(paper) if MEASURED.search(how) and not SOURCE.search(how)] == []
 
 
 def test_files_and_tests_that_are_named_exist():
