@@ -14,7 +14,7 @@ import bpy
 _ROOT = Path(__file__).resolve().parents[2]
 
 _SETTINGS = "bpy.types.surfelsplattingsettings"
-_CONVERT, _POINTS = "guide.md#convert-a-mesh", "guide.md#convert-points-and-scans"
+_CONVERT, _POINTS = "guide.md#convert-a-mesh", "guide.md#scans"
 _FILES = "guide.md#more-surfels-than-memory"
 _LIGHT = "guide.md#light-materials-and-cameras"
 
