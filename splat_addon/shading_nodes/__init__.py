@@ -5,11 +5,12 @@ A node tree arrives here as a `Graph`, a flat tuple of steps that read earlier s
 inputs; each kind of step is a plain numpy function, and an image is one of its settings.
 """
 
-from .graph import ATTRIBUTE, ATTRIBUTE_ALPHA, LAYERS, UV, Graph, Inputs, Step, constant_value, evaluate, pruned
+from .graph import ATTRIBUTE, ATTRIBUTE_ALPHA, BUMP, LAYERS, UV, Graph, Inputs, Step, constant_value, evaluate, pruned
 
 __all__ = [
     "ATTRIBUTE",
     "ATTRIBUTE_ALPHA",
+    "BUMP",
     "LAYERS",
     "UV",
     "Graph",

@@ -29,6 +29,13 @@ FUNCTIONS = {
 UV, ATTRIBUTE, ATTRIBUTE_ALPHA = "uv", "attribute", "attribute alpha"
 LAYERS = {UV: ("uvs", 2, slice(0, 2)), ATTRIBUTE: ("colors", 4, slice(0, 3)), ATTRIBUTE_ALPHA: ("colors", 4, 3)}
 
+#: Places beside a sample: the direction in the grid, and the share of the way to the next. The nearer ones are for
+#: slopes.
+_BESIDE = {1: (0, 1.0), 2: (1, 1.0), 3: (0, 0.25), 4: (1, 0.25)}
+
+#: The kind of step that bends a normal: of a height, a place, the normal, a strength and a distance.
+BUMP = "bump"
+
 
 @dataclass(frozen=True, eq=False)
 class Step:
@@ -52,7 +59,7 @@ class Graph:
 
     def __post_init__(self):
         for number, step in enumerate(self.steps):
-            if step.kind not in FUNCTIONS and step.kind not in LAYERS and step.kind not in images.LOOKUPS:
+            if not any(step.kind in kinds for kinds in (FUNCTIONS, LAYERS, images.LOOKUPS, (BUMP,))):
                 raise ValueError(f"A shading graph has no step of the kind {step.kind!r}.")
             if any(isinstance(given, int) and not 0 <= given < number for given in step.inputs):
                 raise ValueError(f"Step {number} of a shading graph reads a step that does not come before it.")
@@ -78,6 +85,11 @@ class Graph:
     def looks_up(self) -> bool:
         """Whether it looks up images."""
         return not self.kinds.isdisjoint(images.LOOKUPS)
+
+    @property
+    def looks_beside(self) -> bool:
+        """Whether it reads what lies beside the samples."""
+        return self.looks_up or self.is_procedural or BUMP in self.kinds
 
     @property
     def is_procedural(self) -> bool:
@@ -119,13 +131,16 @@ class Inputs:
         return Inputs(count, *(None if array is None else array[..., part] for array in arrays))
 
     def layer(self, name: str, width: int, index: int, beside: int) -> np.ndarray:
-        """(width, n) of a layer; beside: 0, or 1 and 2 for the next sample in the two directions."""
+        """(width, n) of a layer; beside: 0, or a key of `_BESIDE`."""
         rows = getattr(self, name)
         if rows is None or len(rows) < (index + 1) * width:
             return np.zeros((width, 1), np.float32)
         part = slice(index * width, (index + 1) * width)
         steps = getattr(self, f"{name[:-1]}_steps")
-        return rows[part] if not beside or steps is None else rows[part] + steps[beside - 1, part]
+        if not beside or steps is None:
+            return rows[part]
+        direction, share = _BESIDE[beside]
+        return rows[part] + steps[direction, part] * np.float32(share)
 
 
 def pruned(steps: Sequence[Step], result: int) -> tuple[Graph, list[int]]:
@@ -197,11 +212,14 @@ class _Run:
     def _computed(self, step: Step, beside: int) -> np.ndarray:
         if step.kind in LAYERS:
             return self._layer(step, beside)
+        if step.kind == BUMP:
+            heights, places = ([self._given(given, k) for k in (0, 3, 4)] for given in step.inputs[:2])
+            return vectors.bumped(heights, places, *(self._given(given, beside) for given in step.inputs[2:]))
         if step.kind in images.LOOKUPS:
             at = step.inputs[0]
-            vectors = [self._given(at, beside), *(self._given(at, k) for k in range(3))]
+            places = [self._given(at, beside), *(self._given(at, k) for k in range(3))]
             others = [self._given(given, beside) for given in step.inputs[1:]]
-            return images.LOOKUPS[step.kind](vectors, *others, *step.settings)
+            return images.LOOKUPS[step.kind](places, *others, *step.settings)
         return FUNCTIONS[step.kind](*(self._given(given, beside) for given in step.inputs), *step.settings)
 
     def _given(self, given: int | tuple[float, ...], beside: int) -> np.ndarray:

@@ -135,7 +135,28 @@ def transformed(vector, matrix: np.ndarray) -> np.ndarray:
     return stacked(*(dot(row[:3], vector) + row[3] for row in matrix))
 
 
+def bumped(heights, places, normal, strength, distance) -> np.ndarray:
+    """The (3, n) unit normal that a height bends, as in Mikkelsen, "Bump Mapping Unparametrized Surfaces on the GPU",
+    2010.
+
+    heights: (n,) at the samples and at their neighbours in the two directions of the grid, and likewise (3, n) places.
+    """
+    right, up = (place - places[0] for place in places[1:])
+    across = cross(up, normal), cross(normal, right)
+    area = dot(right, across[0])
+    slope = (heights[1] - heights[0]) * across[0] + (heights[2] - heights[0]) * across[1]
+    bent = unit(np.abs(area) * normal - distance * np.sign(area) * slope)
+    strength = np.maximum(strength, 0)
+    return np.where(area == 0, normal, unit(strength * bent + (1 - strength) * normal))
+
+
+def halved(vector) -> np.ndarray:
+    """A unit vector as the colour of a normal map."""
+    return vector / 2 + np.float32(0.5)
+
+
 FUNCTIONS = {
+    "halved": halved,
     "vector math": vector_math,
     "mapping": mapped,
     "rotated": rotated,

@@ -292,7 +292,7 @@ def test_its_strength_is_taken(nodes, made):
 @pytest.mark.parametrize(
     ("wire", "said"),
     [
-        (lambda n: n.link(n.add("ShaderNodeBump").outputs[0], "Normal"), "normal comes from a Bump node"),
+        (lambda n: n.link(n.add("ShaderNodeBevel").outputs[0], "Normal"), "normal comes from a Bevel node"),
         (lambda n: n.link(n.add("ShaderNodeWireframe").outputs[0], "Roughness"), "roughness comes from a Wireframe"),
         (
             lambda n: n.link(n.add("ShaderNodeParticleInfo").outputs["Location"], "Emission Color"),

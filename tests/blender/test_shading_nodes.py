@@ -59,6 +59,7 @@ def builds() -> dict:
     for kind in ("AXIS_ANGLE", "X_AXIS", "Y_AXIS", "Z_AXIS", "EULER_XYZ"):
         found[f"rotate {kind}"] = lambda c, k=kind: turned(c, k)
     found |= {
+        "bump": bumped,
         "rgb curves": curves,
         "vector curves": vector_curves,
         "float curve": float_curve,
@@ -68,6 +69,12 @@ def builds() -> dict:
     for projection in ("FLAT", "BOX", "SPHERE", "TUBE"):
         found[f"image {projection}"] = lambda c, p=projection: image(c, p)
     return found
+
+
+def bumped(c):
+    waves = c.math("SINE", c.math("MULTIPLY", c.part("X"), 5.0))
+    given = {"Height": c.math("MULTIPLY", waves, c.part("Y")), "Strength": 0.7, "Distance": 0.4}
+    return c.add("Bump", given, invert=True).outputs[0]
 
 
 def mixed(c, blend):

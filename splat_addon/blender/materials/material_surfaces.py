@@ -15,14 +15,14 @@ import bpy
 from ...sampling import Channel, Computed, NormalMap, Surface, Texture, VertexColors
 from ...sampling.attributes.surfaces import ALPHA, RED
 from ...shading_nodes import constant_value
-from .graphs.channels import ReadGraph, read_channel, read_color
+from .graphs.channels import ReadGraph, read_channel, read_color, read_normal
 from .graphs.flattened import flattened
 from .graphs.mixes import read_mixed
 from .graphs.reading import STRAIGHT_ON
 from .mean_surfaces import mean_of
 from .mesh_layers import MeshLayers, default_color_layer
 from .node_products import AttributeSource, ImageSource, Product, product
-from .node_trees import called, uses_nodes
+from .node_trees import uses_nodes
 from .node_walks import linked, outer
 from .shader_mixes import channels
 from .socket_ranges import in_range, is_radiance
@@ -281,7 +281,9 @@ class _Reader:
 
     def _read_normal_map(self, node: bpy.types.Node, groups: tuple[bpy.types.Node, ...]) -> NormalMap | None:
         if node.bl_idname != "ShaderNodeNormalMap" or node.mute:
-            raise UnreadableError(called(node))
+            normal = self._shader.node.inputs[self._sockets["normal_map"][0]]
+            read = read_normal(normal, self._shader.groups, self._layers)
+            return NormalMap(self._of_graph("normal_map", read), space="OBJECT")
         if node.space not in _SPACES or getattr(node, "convention", "OPENGL") != "OPENGL":
             raise UnreadableError(f"a normal map in {node.space.replace('_', ' ').lower()} space, or of DirectX")
         strength, _ = outer(node.inputs["Strength"], groups)

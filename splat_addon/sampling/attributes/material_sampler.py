@@ -59,7 +59,7 @@ class MaterialSampler:
         self.optional = tuple(n for n in OPTIONAL_LAYOUT if any(_varies(getattr(s, n, None)) for s in surfaces))
         graphs = [factor.graph for factor in factors if isinstance(factor, Computed)]
         self.needs_colors = any(isinstance(f, VertexColors) for f in factors) or any(g.reads_colors for g in graphs)
-        self.needs_color_steps = any(graph.reads_colors and (graph.looks_up or graph.is_procedural) for graph in graphs)
+        self.needs_color_steps = any(graph.reads_colors and graph.looks_beside for graph in graphs)
         self.needs_tangents = any(s.normal_map is not None and s.normal_map.space == "TANGENT" for s in surfaces)
         self.needs_uvs = bool(textures) or self.needs_tangents or any(graph.reads_uvs for graph in graphs)
 

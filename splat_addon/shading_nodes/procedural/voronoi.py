@@ -18,22 +18,23 @@ from .patterns import random_color
 _FAR = np.float32(3e38)
 
 
-def _point(cell: list[np.ndarray]) -> list[np.ndarray]:
+def _point(cell: list[np.ndarray], by_pcg: bool) -> list[np.ndarray]:
     """The place of a cell's point in it, 0 to 1 in each dimension."""
-    return [random(*cell)] if len(cell) == 1 else of_cell(cell)
-
-
-def _tint(cell: list[np.ndarray]) -> np.ndarray:
-    """(3, n) the colour of a cell."""
     if len(cell) == 1:
-        return np.stack(random_color(cell))
-    return np.stack(of_cell(cell if len(cell) > 2 else [*cell, np.zeros(1)])[:3])
+        return [random(*cell)]
+    if by_pcg:
+        return of_cell(cell)
+    if len(cell) < 4:
+        return [random(*cell), *(random(*cell, np.float32([k])) for k in range(1, len(cell)))]
+    return [random(*(cell[(k - turn) % 4] for k in range(4))) for turn in range(4)]
 
 
 class _Cells:
-    """The cells around places. randomness: how far points are from the corners of their cells."""
+    """The cells around places. randomness: how far points are from the corners of their cells. by_pcg: as in
+    `voronoi`."""
 
-    def __init__(self, places: list[np.ndarray], randomness: np.ndarray):
+    def __init__(self, places: list[np.ndarray], randomness: np.ndarray, by_pcg: bool):
+        self._by_pcg = by_pcg
         self.dimensions = len(places)
         self._cell = [np.floor(place) for place in places]
         self.inside = [place - cell for place, cell in zip(places, self._cell, strict=True)]
@@ -48,10 +49,17 @@ class _Cells:
     def at(self, offset: list) -> tuple[list, list]:
         """A cell by its offset, and its point."""
         cell = self.cell(offset)
-        return offset, [o + p * self._randomness for o, p in zip(offset, _point(cell), strict=True)]
+        return offset, [o + p * self._randomness for o, p in zip(offset, _point(cell, self._by_pcg), strict=True)]
 
     def cell(self, offset: list) -> list[np.ndarray]:
         return [own + step for own, step in zip(self._cell, offset, strict=True)]
+
+    def tint(self, offset: list) -> np.ndarray:
+        """(3, n) the colour of a cell."""
+        cell = self.cell(offset)
+        if len(cell) == 1 or not self._by_pcg:
+            return np.stack(random_color(cell))
+        return np.stack(of_cell(cell if len(cell) > 2 else [*cell, np.zeros(1)])[:3])
 
     def absolute(self, point: list) -> np.ndarray:
         return np.stack(np.broadcast_arrays(*(own + p for own, p in zip(self._cell, point, strict=True))))
@@ -89,7 +97,7 @@ def _nearest(cells: _Cells, metric: str, exponent, rank: int) -> tuple[np.ndarra
 def _by_rank(rank: int):
     def octave(cells, metric, exponent, smoothness):
         distance, offset, point = _nearest(cells, metric, exponent, rank)
-        return distance, _tint(cells.cell(offset)), cells.absolute(point)
+        return distance, cells.tint(offset), cells.absolute(point)
 
     return octave
 
@@ -103,7 +111,7 @@ def _smooth(cells, metric, exponent, smoothness):
     distance = color = place = None
     for offset, point in cells.around(2):
         away = _distance(point, cells.inside, metric, exponent)
-        tint, point = _tint(cells.cell(offset)), np.stack(np.broadcast_arrays(*point))
+        tint, point = cells.tint(offset), np.stack(np.broadcast_arrays(*point))
         if distance is None:
             distance, color, place = away, tint, point
             continue
@@ -152,17 +160,33 @@ _FEATURES = {"F1": _first, "F2": _second, "SMOOTH_F1": _smooth}
 
 
 def voronoi(
-    vector, w, scale, detail, roughness, lacunarity, smoothness, exponent, randomness, dimensions, feature, metric, norm
+    vector,
+    w,
+    scale,
+    detail,
+    roughness,
+    lacunarity,
+    smoothness,
+    exponent,
+    randomness,
+    dimensions: str,
+    feature: str,
+    metric: str,
+    norm: bool,
+    by_pcg: bool,
 ) -> np.ndarray:
-    """(8, n): distance (or radius), colour, position and w. norm: whether the distance is divided by the largest."""
+    """(8, n): distance (or radius), colour, position and w. norm: whether the distance is divided by the largest.
+
+    by_pcg: whether the random numbers of cells are those of newer Blenders.
+    """
     places = in_dimensions(vector * scale, w * scale, dimensions)
     detail, roughness = np.clip(detail, 0, 15), np.clip(roughness, 0, 1)
     randomness, smoothness = np.clip(randomness, 0, 1), np.clip(smoothness / 2, 0, np.float32(0.5))
     reach = np.float32(0.5) + np.float32(0.5) * randomness
     if feature == "N_SPHERE_RADIUS":
-        return _rows(_radius(_Cells(places, randomness)))
+        return _rows(_radius(_Cells(places, randomness, by_pcg)))
     if feature == "DISTANCE_TO_EDGE":
-        return _rows(_edges(places, detail, roughness, lacunarity, randomness, reach, norm))
+        return _rows(_edges(places, detail, roughness, lacunarity, randomness, reach, norm, by_pcg))
     farthest = _distance([reach] * len(places), [np.zeros(1, np.float32)] * len(places), metric, exponent)
     farthest = farthest * (2 if feature == "F2" else 1)
     distance = largest = np.zeros(1, np.float32)
@@ -170,7 +194,7 @@ def voronoi(
     color, place = np.zeros((3, 1), np.float32), np.zeros((len(places), 1), np.float32)
     is_one = (detail == 0) | (roughness == 0)
     for number in range(int(np.ceil(np.where(is_one, 0, detail)).max()) + 1):
-        cells = _Cells([each * octave_scale for each in places], randomness)
+        cells = _Cells([each * octave_scale for each in places], randomness, by_pcg)
         far, tint, at = _FEATURES[feature](cells, metric, exponent, smoothness)
         rest = np.where(number <= detail, 1, detail - np.floor(detail)).astype(np.float32)
         rest = np.where((number > 0) & (is_one | (number > np.ceil(detail))), 0, rest)
@@ -184,13 +208,13 @@ def voronoi(
     return _rows(distance, color, place)
 
 
-def _edges(places, detail, roughness, lacunarity, randomness, reach, norm) -> np.ndarray:
+def _edges(places, detail, roughness, lacunarity, randomness, reach, norm, by_pcg) -> np.ndarray:
     """(n,) distance to the nearest edge of all octaves."""
     amplitude = octave_scale = np.ones(1, np.float32)
     largest, distance = reach, np.float32([8])
     is_one = (detail == 0) | (roughness == 0)
     for number in range(int(np.ceil(np.where(is_one, 0, detail)).max()) + 1):
-        far = _to_edge(_Cells([each * octave_scale for each in places], randomness))
+        far = _to_edge(_Cells([each * octave_scale for each in places], randomness, by_pcg))
         nearer = distance + amplitude * (np.minimum(distance, far / octave_scale) - distance)
         lower = largest + amplitude * (reach / octave_scale - largest)
         rest = np.where(number <= detail, 1, detail - np.floor(detail)).astype(np.float32)

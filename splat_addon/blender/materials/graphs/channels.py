@@ -5,6 +5,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from ....shading_nodes import Graph, constant_value
 from ..mesh_layers import MeshLayers
 from ..node_walks import Node
@@ -14,6 +16,7 @@ from ..texture_images import UnreadableError
 from ..transparent_mixes import TransparentMix
 from . import converters, seen_straight_on, sources, textures, vector_readers  # noqa: F401 they register what nodes become
 from .reading import GraphReading, Value
+from .vector_readers import as_direction
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,6 +76,14 @@ def read_color(socket, groups: tuple[Node, ...], layers: MeshLayers) -> ReadGrap
     """A colour socket of any node. Raises UnreadableError if nothing of it can be read."""
     reading = GraphReading(layers, groups)
     return ReadGraph(*reading.graph(reading.read_strictly(socket)), reading.doubts)
+
+
+def read_normal(socket, groups: tuple[Node, ...], layers: MeshLayers) -> ReadGraph:
+    """A Normal socket as the colour of a normal map in object space. Raises UnreadableError."""
+    reading = GraphReading(layers, groups)
+    matrix = np.linalg.inv(np.array(reading.owner.matrix_world, np.float64))
+    shown = reading.vector("halved", as_direction(reading, reading.read_strictly(socket), matrix, "NORMAL"))
+    return ReadGraph(*reading.graph(shown), reading.doubts, reading.asks_owner)
 
 
 def limited(reading: GraphReading, shader: Shader, name: str) -> Value:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ....shading_nodes import ATTRIBUTE, ATTRIBUTE_ALPHA, UV
+from ....shading_nodes import ATTRIBUTE, ATTRIBUTE_ALPHA, BUMP, UV
 from ..mesh_layers import GENERATED, NORMAL, POSITION, TRUE_NORMAL
 from ..node_products import ImageSource
 from ..node_walks import Node, Socket, linked
@@ -80,6 +80,24 @@ def _geometry(tree: GraphReading, node: Node, output: str) -> Value:
         tree.seen_straight_on(node)
         return Value((0.0,))
     raise unreadable(node, f"that gives {output}")
+
+
+@reads("Bump")
+def _bump(tree: GraphReading, node: Node, output: str) -> Value:
+    """The bent normal, in world space."""
+    normal = in_world(tree, derived(tree, NORMAL), "NORMAL")
+    if linked(node.inputs["Normal"]) is not None:
+        try:
+            normal = tree.read_strictly(node.inputs["Normal"])
+        except UnreadableError as error:
+            tree.doubts.setdefault(str(error), REST)
+    if linked(node.inputs["Height"]) is None:
+        return normal
+    place = in_world(tree, derived(tree, POSITION), "POINT")
+    strength, distance = (tree.read(node.inputs[name]) for name in ("Strength", "Distance"))
+    if node.invert:
+        distance = tree.add("multiplied", distance, Value((-1.0,)))
+    return tree.vector(BUMP, tree.read_strictly(node.inputs["Height"]), place, normal, strength, distance)
 
 
 @reads("Attribute", "VertexColor")

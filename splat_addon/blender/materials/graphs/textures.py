@@ -3,12 +3,17 @@
 
 from __future__ import annotations
 
+import bpy
+
 from ..mesh_layers import GENERATED
 from ..node_walks import Node
 from .reading import GraphReading, Value, reads
 from .sources import coordinates, derived
 
 _ZERO = Value((0.0,))
+
+#: The version from which on Voronoi textures have other random numbers.
+_PCG = (5, 0, 0)
 
 
 def _place(tree: GraphReading, node: Node) -> Value:
@@ -41,7 +46,7 @@ def _noise(tree: GraphReading, node: Node, output: str) -> Value:
 @reads("TexVoronoi")
 def _voronoi(tree: GraphReading, node: Node, output: str) -> Value:
     names = ("W", "Scale", "Detail", "Roughness", "Lacunarity", "Smoothness", "Exponent", "Randomness")
-    how = node.voronoi_dimensions, node.feature, node.distance, node.normalize
+    how = node.voronoi_dimensions, node.feature, node.distance, node.normalize, bpy.app.version >= _PCG
     place = _place(tree, node) if node.voronoi_dimensions != "1D" else Value((0.0,) * 3, 3)
     made = tree.add("voronoi", place, *_inputs(tree, node, *names), settings=how)
     first, last = {"Color": (1, 4), "Position": (4, 7), "W": (7, 8)}.get(output, (0, 1))
