@@ -242,4 +242,6 @@ def random_settings(by: Chance, among_polygons: bool):
         lights_splats=lights_splats,
         culls_backs=by.some(0.1),
         as_printed=by.some(0.15),
+        epsilon_length=by.pick(0.0, 0.0, 0.0, 0.05),
+        filter_variance=by.pick(0.5, 0.5, 0.5, 0.6),
     ), shown

@@ -28,6 +28,7 @@ from splat_addon.rendering.device.standalone import _STORED
 from splat_addon.rendering.features import gbuffer
 from splat_addon.rendering.plan.frame_plan import FramePlan
 from splat_addon.sampling import PLAIN, TriangleMesh, joined_at_edges, sample_mesh
+from splat_addon.sampling.ldc.reductions import REDUCTIONS
 
 FLAT = Settings(supersampling=1, shading="flat", outputs=("color",), detail_tolerance=0.0)
 LIT = replace(FLAT, shading="phong", shadow_resolution=0)
@@ -54,6 +55,7 @@ def figures(renderer: Renderer, models: Path, size: int) -> Iterator[tuple[str, 
     yield from _of_2005(draw, model, size)
     yield from _of_2006(draw, renderer.render, size)
     yield from _view_independent(draw, size)
+    yield from _reductions(draw, models, size)
 
 
 def _of_2003(draw: Draw, model, size: int):
@@ -131,6 +133,33 @@ def _view_independent(draw: Draw, size: int):
     shown = [draw(text, FLAT, **how) for how in ({"method": "quad"}, ours, ren)]
     truth = render_exact(*text, FLAT, samples=4, pixel_filter="box").color
     yield "view-independent-10", "No filter; 4 hardware samples; Ren et al.; the truth", [*shown, truth], 1
+
+
+def _reductions(draw: Draw, models: Path, size: int):
+    above = {"eye": np.array((0.45, 1.2, 0.75)), "fov": 0.6, "up": (0, 1, 0)}
+    for name, file, resolution, view, reductions in (
+        ("view-independent-4", "bunny.obj.gz", 64, {}, ("none", "surfel_normal", "three_to_one", "grazing")),
+        ("view-independent-5", "phoenix_bird.glb", 256, above, ("three_to_one", "grazing", "surfel_normal")),
+    ):
+        mesh, shown = load(models / file), []
+        for reduction in reductions:
+            with colored_by_image(reduction):
+                surfels = sample_mesh(mesh, resolution=resolution, reduction=reduction, **PLAIN)
+            shown.append(draw(in_view(surfels, size, **view), LIT, method="quad", supersampling=2))
+        yield name, f"Surfels of the images along x, y, z in red, green, blue: {', '.join(reductions)}", shown, 1
+
+
+@contextmanager
+def colored_by_image(name: str):
+    """Samples of a reduction have the colour of their layered depth image."""
+    chosen = REDUCTIONS[name]
+
+    def merge(arrays, axes, spacing):
+        colored = {**arrays, "colors": np.eye(4, dtype=np.float32)[axes] * 0.8 + (0.05, 0.05, 0.05, 1)}
+        return chosen.merge(colored, axes, spacing) if chosen.merge else colored
+
+    with patch.dict(REDUCTIONS, {name: replace(chosen, merge=merge)}):
+        yield
 
 
 @cache

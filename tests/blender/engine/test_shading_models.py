@@ -65,9 +65,11 @@ def test_a_color_ramp_is_a_textures(sheet, scene, picture):
 def test_a_line_over_shallow_angles_and_the_papers_ways_reach_the_renderer(sheet, scene):
     sheet.use_lines, sheet.line_shallow_angle = True, 0.25
     sheet.lights_splats = sheet.culls_backs = sheet.as_printed = True
+    sheet.epsilon_length, sheet.filter_variance = 0.25, 0.625
     settings = viewport_settings(scene)
     assert settings.lines.shallow_angle == 0.25
     assert settings.lights_splats and settings.culls_backs and settings.as_printed
+    assert (settings.epsilon_length, settings.filter_variance) == (0.25, 0.625)
 
 
 def test_a_matcap_is_an_image(sheet, picture):
