@@ -13,7 +13,7 @@ import pytest
 
 from splat_addon.reference import scenes
 from splat_addon.rendering import Arrival, Environment, Refinement, Renderer, Settings, look_at
-from splat_addon.rendering.detail import levels
+from splat_addon.rendering.detail import hierarchies
 from splat_addon.rendering.detail.hierarchies import built_hierarchy
 from splat_addon.rendering.detail.stand_in import spread, stand_in
 from splat_addon.rendering.upload import loading, pools
@@ -445,7 +445,7 @@ def test_a_thread_s_error_is_raised_by_each_picture(small_steps, on_device, monk
     def fail(surfels, told):
         raise MemoryError("no room for nodes")
 
-    monkeypatch.setattr(levels, "build_hierarchy", fail)
+    monkeypatch.setattr(hierarchies, "build_hierarchy", fail)
 
     def draw(device):
         view, thread = begun(device)
@@ -460,7 +460,7 @@ def test_a_thread_s_error_is_raised_by_each_picture(small_steps, on_device, monk
 
 def test_what_is_left_falls_while_a_hierarchy_is_built(small_steps, on_device, monkeypatch):
     scene, camera = torus()
-    build = levels.build_hierarchy
+    build = hierarchies.build_hierarchy
 
     def draw(device):
         (view, thread), left = begun(device), []
@@ -472,7 +472,7 @@ def test_what_is_left_falls_while_a_hierarchy_is_built(small_steps, on_device, m
 
             return build(surfels, looked)
 
-        monkeypatch.setattr(levels, "build_hierarchy", watched)
+        monkeypatch.setattr(hierarchies, "build_hierarchy", watched)
         shown(device, view, scene, camera, SETTINGS)
         thread.work()
         return left, view.loading.left[0]
@@ -489,7 +489,7 @@ def test_a_job_that_nobody_waits_for_ends_at_its_next_step(small_steps, on_devic
         view, thread = begun(device)
         shown(device, view, scene, camera, SETTINGS)
         future, _ = thread.jobs[0]
-        monkeypatch.setattr(levels, "build_hierarchy", lambda _, told: [view.loading.clear(), told(0.1)])
+        monkeypatch.setattr(hierarchies, "build_hierarchy", lambda _, told: [view.loading.clear(), told(0.1)])
         thread.work()
         return future.exception()
 
@@ -524,7 +524,7 @@ def test_a_hierarchy_is_built_in_the_background_while_every_surfel_is_drawn(smal
 def test_stand_ins_have_no_levels(small_steps, on_device, monkeypatch):
     """Building them would take longer than the picture."""
     scene, camera = torus()
-    monkeypatch.setattr(levels, "build_hierarchy", lambda *_: pytest.fail("a hierarchy was built at once"))
+    monkeypatch.setattr(hierarchies, "build_hierarchy", lambda *_: pytest.fail("a hierarchy was built at once"))
 
     def draw(device):
         view, _ = begun(device)
