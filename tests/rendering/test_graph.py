@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from splat_addon.rendering.features import check_members
 from splat_addon.rendering.plan.executor import Execution
 from splat_addon.rendering.plan.graph import Loop, Part, Pass, Texture, changed, each_pass, trimmed
 from splat_addon.rendering.plan.repeats import Repeats
@@ -117,3 +118,18 @@ class Tile:
 
     def swap(self, texture):
         self.swapped += 1
+
+
+@pytest.mark.parametrize(
+    ("members", "said"),
+    [
+        ({"part": lambda planning, p: ()}, "it may mean parts"),
+        ({"VALUE": {}}, "it may mean VALUES"),
+        ({"parts": lambda planning: ()}, "takes 1 parameters, and must take 2"),
+    ],
+)
+def test_a_misspelt_member_of_a_feature_is_refused(members, said):
+    feature = SimpleNamespace(__name__="features.odd", **members)
+    with pytest.raises(TypeError, match=said):
+        check_members(feature)
+    check_members(SimpleNamespace(__name__="features.even", passes=lambda planning: (), VALUES={}, helper=len))

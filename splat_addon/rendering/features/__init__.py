@@ -18,6 +18,9 @@ Each module decides from a `Planning` whether the frame needs it, and records th
     NAMES                  the names of its files in shaders/features, unless it has a single one of its own name
 """
 
+from difflib import get_close_matches
+from inspect import isfunction
+
 from ..scene.polygons import CORNERS_PER_ROW, TEXELS_PER_CORNER
 from ..shading_models import SHADING_MODELS
 from ..upload.packing import BLEND_STEPS, SPLATS_PER_ROW, TEXELS_PER_SPLAT
@@ -105,6 +108,32 @@ FEATURES = (
     sample_sum,
     together,
 )
+
+
+#: member -> how many parameters it takes; 0 for tables
+_MEMBERS = {"passes": 1, "is_present": 1, "parts": 2, "read_back": 1, "check": 1, "draws": 3, "margin": 1}
+_MEMBERS |= dict.fromkeys(("VALUES", "INPUTS", "DRAWN", "ARRIVES", "CONSTANTS", "NAMES"), 0)
+
+#: The share of letters that a misspelt name has in common with what it means.
+_ALIKE = 0.8
+
+
+def check_members(feature) -> None:
+    """Raise TypeError for a member of a feature that takes other parameters, or whose name is nearly one: it would be
+    absent, and nobody would know."""
+    for name, value in vars(feature).items():
+        if name.startswith("_") or not (isfunction(value) or isinstance(value, dict | tuple)):
+            continue
+        takes = value.__code__.co_argcount if isfunction(value) else 0
+        if name in _MEMBERS and takes != _MEMBERS[name]:
+            raise TypeError(f"{feature.__name__}.{name} takes {takes} parameters, and must take {_MEMBERS[name]}.")
+        alike = [member for member, count in _MEMBERS.items() if count == takes and name not in _MEMBERS]
+        if meant := get_close_matches(name, alike, 1, _ALIKE):
+            raise TypeError(f"{feature.__name__} has {name}, which nobody calls: it may mean {meant[0]}.")
+
+
+for _feature in FEATURES:
+    check_members(_feature)
 
 
 def name_of(feature) -> str:
