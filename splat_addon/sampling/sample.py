@@ -20,6 +20,7 @@ from ..surfels import LAYOUT, OPTIONAL_LAYOUT, Surfels, empty_surfels
 from .attributes.blend_depths import blend_depths
 from .attributes.lifts import edge_bulges, lifts
 from .attributes.material_sampler import MaterialSampler
+from .attributes.normal_changes import fields_on_triangles
 from .attributes.sample_attributes import SampleFiller
 from .attributes.tangents import layered_tangents
 from .attributes.texture_mapping import BORDER, UV_FIELDS, is_texture_mapped
@@ -292,6 +293,8 @@ class SamplingRun:
         if self._bulges is not None and gaps:
             places = gaps["positions"] + self.grid.surfel_origin
             gaps["lift"] = lifts(barycentric(self.mesh, triangles, places).T, self._bulges[:, triangles])
+        if NORMAL_FIELDS[0] in arrays and gaps:
+            gaps |= fields_on_triangles(self.mesh, triangles, gaps)
         report(1.0)
         return arrays | fields, gaps, triangles
 

@@ -3,15 +3,18 @@
 about."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 import trimesh
+from scipy.spatial import cKDTree
 
 from splat_addon.hierarchy import build_hierarchy
 from splat_addon.normal_fields import NORMAL_FIELDS, NORMAL_STEP, changes
 from splat_addon.quaternions import axes_columns
 from splat_addon.sampling import Tolerance, TriangleMesh, sample_mesh
+from splat_addon.sampling.attributes.normal_changes import fields_on_triangles
 from splat_addon.sampling.deform.deforming import DeformingSurfels
 from splat_addon.surfels import concatenate
 
@@ -47,6 +50,14 @@ def test_they_have_none_unless_it_is_asked_for_or_where_nothing_is_smooth(sample
     normals = np.repeat(cube.face_normals[:, None], 3, axis=1)
     flat = TriangleMesh(cube.vertices, cube.faces, normals)
     assert not sample_mesh(flat, resolution=8, normal_fields=True).normals_change
+
+
+def test_surfels_that_fill_gaps_have_the_change_of_their_triangles(sampled):
+    mesh = ball()
+    middles = mesh.positions[mesh.triangles].mean(axis=1)
+    near = cKDTree(middles).query(sampled.positions + sampled.origin)[1]
+    fields = fields_on_triangles(mesh, near, sampled.arrays())
+    assert np.median(off(replace(sampled, **fields))) < 0.03
 
 
 def test_merged_discs_have_the_change_over_all_that_they_replace():

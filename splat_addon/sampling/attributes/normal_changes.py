@@ -7,6 +7,7 @@ import numpy as np
 
 from ...normal_fields import NORMAL_FIELDS, changes, fields_of
 from ...quaternions import axes_columns
+from ..mesh.triangle_mesh import TriangleMesh
 from .texture_mapping import axis_steps
 
 
@@ -32,3 +33,17 @@ def from_normals_per_cell(
     column, row = per_cell[:, :3].T, per_cell[:, 3:].T
     along = tuple(column * c + row * r for c, r in axis_steps(arrays, axes, spacing))
     return fields_of(arrays["normals"].T, along, axes_columns(arrays["rotations"], 0, 1, 2))
+
+
+def fields_on_triangles(mesh: TriangleMesh, triangles: np.ndarray, arrays: dict[str, np.ndarray]) -> dict:
+    """`NORMAL_FIELDS` of surfels anywhere on these (n,) triangles, as their corner normals change over them.
+
+    arrays: by field of `Surfels`."""
+    corners, normals = mesh.positions[mesh.triangles[triangles]], mesh.corner_normals[triangles].astype(np.float64)
+    edges, rises = corners[:, 1:] - corners[:, :1], normals[:, 1:] - normals[:, :1]
+    axes = axes_columns(arrays["rotations"].astype(np.float64), 0, 1, 2)
+    half_axes = axes[:2] * arrays["scales"].T[:, None]
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        along = np.einsum("nec,acn->aen", np.linalg.pinv(edges.swapaxes(1, 2)), half_axes)
+        changes_of = np.einsum("aen,nec->acn", along, rises) / np.linalg.norm(normals.mean(axis=1), axis=1)
+    return fields_of(arrays["normals"].T.astype(np.float64), changes_of, axes)
