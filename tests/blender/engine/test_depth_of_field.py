@@ -41,7 +41,7 @@ def discs(scene, add_surfels, add_mesh):
 @pytest.mark.parametrize("opening", OPENINGS)
 def test_the_blur_is_cycles(opening, scene, camera, discs, picture, switch_to_cycles):
     camera(**OPENINGS[opening])
-    scene.surfel_splatting.samples = 256
+    scene.surfel_splatting.samples = 128
     blurred = picture()[..., 3]
     scene.cycles.pixel_filter_type = "BOX"
     switch_to_cycles(samples=512, filter_width=1.0)
@@ -58,7 +58,7 @@ def test_the_focus_object_is_sharp(scene, camera, add_surfels, picture):
     scene.collection.objects.link(focus)
     made = camera(focus_distance=1, focus_object=focus)
     add_surfels([(0.3, 0.2, 5)], size=0.5)
-    scene.surfel_splatting.samples = 64
+    scene.surfel_splatting.samples = 32
     in_focus = picture()[..., 3]
     made.data.dof.use_dof = False
     sharp = picture()[..., 3]
