@@ -344,6 +344,7 @@ CASES = [
     ("torus", "mip", {"shading": "flat", "lines": Lines(width=2.0)}),
     ("solid_sphere", "quad", {"shading": "flat", "lines": Lines(shallow_angle=0.4)}),
     ("light_linking", "quad", {}),
+    ("torus", "quad", {"shading": "flat", "as_printed": True, "edge_threshold": 0.5}),
     ("deep", "quad", {}),
     *(("bent", method, {}) for method in ("mip", "quad", "homogeneous", "sprites_unfiltered")),
     ("folds", "mip", {"sum_format": "float16"}),
