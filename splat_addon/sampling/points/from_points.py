@@ -32,6 +32,9 @@ MAX_NEIGHBOURS = 256
 
 DEFAULT_COLOR = (0.8, 0.8, 0.8, 1.0)
 
+#: An estimated half-axis is at most this many times the median one, or this many times that of its neighbours.
+_MOST_MEDIANS, _MOST_OF_NEIGHBOURS = 5.0, 2.0
+
 #: The start and end of each step as shares of the total time.
 _STAGES = {
     "neighbours": (0.05, 0.6),
@@ -137,6 +140,7 @@ def _estimate(given, neighbours, splat_size, isolated, viewpoint, crease_angle, 
     axes, scales = _ellipses(
         given, positions, planes, missing_radii, nearest, distances, alone, splat_size, creases, progress
     )
+    limited = _limit(scales, nearest, missing_radii, alone)
     colors, default_colors = _colors(given, len(positions))
     fields = {
         "rotations": axes_quaternions(axes, np.cross(planes, axes), planes),
@@ -153,6 +157,7 @@ def _estimate(given, neighbours, splat_size, isolated, viewpoint, crease_angle, 
         isolated=int(alone.sum()),
         estimated_normals=int(missing_normals[keep].sum()),
         estimated_radii=int(missing_radii[keep].sum()),
+        limited=int(limited[keep].sum()),
         default_colors=int(default_colors[keep].sum()),
         bright_colors=int((colors[keep, :3].max(axis=1) > BRIGHT_COLOR).sum()),
         parts=parts,
@@ -203,6 +208,23 @@ def _ellipses(
         own = np.flatnonzero(~missing)
         scales[own] = given["radii"][own, None]
     return axes, scales
+
+
+def _limit(scales: np.ndarray, nearest: np.ndarray, missing: np.ndarray, alone: np.ndarray) -> np.ndarray:
+    """Shorten (N, 2) half-axes, in place, that reach across a gap; returns (N,) bool, which ones. A splat that is much
+    larger than the others is one only if its neighbours that are no strays are large too, as in a sparse part of a
+    scan."""
+    largest, limited = scales.max(axis=1), np.zeros(len(scales), bool)
+    if alone.all() or not nearest.shape[1]:
+        return limited
+    typical = np.median(largest[~alone])
+    rows = np.flatnonzero(missing & (largest > _MOST_MEDIANS * typical))
+    # strays count as the smallest
+    near = np.median(np.where(alone[nearest[rows]], 0, largest[nearest[rows]]), axis=1)
+    limits = np.maximum(_MOST_MEDIANS * typical, _MOST_OF_NEIGHBOURS * near)
+    limited[rows] = largest[rows] > limits
+    scales[rows] = np.minimum(scales[rows], limits[:, None])
+    return limited
 
 
 def _colors(given, count: int) -> tuple[np.ndarray, np.ndarray]:

@@ -17,6 +17,7 @@ class PointsReport:
     non_finite, duplicates: left out.
     isolated: found, and left out unless `kept_isolated`.
     estimated_normals, estimated_radii, default_colors: surfels whose own value was missing or unusable.
+    limited: surfels whose estimated radius reached across a gap, and was reduced.
     bright_colors: surfels whose colour is far above white.
     parts: connected parts, each oriented as a whole; 0 if no normal was estimated.
     creases: surfels that end at an edge between planes through their neighbours.
@@ -32,6 +33,7 @@ class PointsReport:
     estimated_normals: int = 0
     estimated_radii: int = 0
     default_colors: int = 0
+    limited: int = 0
     bright_colors: int = 0
     parts: int = 0
     creases: int = 0
@@ -54,6 +56,7 @@ class PointsReport:
                 self.estimated_normals
             ),
             f"radii of {self.estimated_radii:,} points from their neighbours": self.estimated_radii,
+            f"the size of {self.limited:,} points beside gaps from that of their neighbours": self.limited,
             f"edges at which {self.creases:,} points end, where planes through their neighbours meet": self.creases,
             f"the colour of {self.default_colors:,} points, which have none": self.default_colors,
         }

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from splat_addon.sampling import surfels_from_points
+from splat_addon.sampling.points.from_points import _limit
 from splat_addon.sampling.points.normals import tangent_frames
 
 
@@ -28,6 +29,20 @@ def test_a_square_grid_gets_discs_of_the_splat_size(grid_points):
     surfels, _ = surfels_from_points(grid_points(20, 20, 0.5, 0.5), splat_size=1.5)
     inner = surfels.scales.reshape(20, 20, 2)[3:-3, 3:-3]
     assert np.allclose(inner, 1.5 * 0.5, rtol=0.05)
+
+
+def test_a_large_splat_needs_large_neighbours_that_are_no_strays():
+    """Point 0 is beside a gap, points 1 to 9 are in a sparse part, 10 and 11 are beside strays, 12 to 19 are these."""
+    scales, alone = np.ones((100, 2)), np.zeros(100, bool)
+    scales[:20] = 20, 10
+    alone[12:20] = True
+    nearest = np.tile(np.arange(50, 58), (100, 1))
+    nearest[1:10], nearest[10:12] = np.arange(1, 9), np.arange(12, 20)
+    missing = np.ones(100, bool)
+    missing[11] = False  # its radius was given
+    limited = _limit(scales, nearest, missing, alone)
+    assert np.flatnonzero(limited[:12]).tolist() == [0, 10] and not limited[20:].any()
+    assert scales[[0, 1, 10, 11, 99]].tolist() == [[5, 5], [20, 10], [5, 5], [20, 10], [1, 1]]
 
 
 @pytest.mark.parametrize("stretch", [2.0, 4.0])
