@@ -4,12 +4,16 @@
 All methods must keep hard bounds: no non-finite number, and no empty pixel that the truth covers fully. Methods without
 a low-pass must also equal the truth's picture within `LEAST_PSNR`. Cases in which a paper's own formula fails are in
 `KNOWN_FAILURES`; the default methods have none.
+
+The default methods draw every case. Of a test with many, each other method draws the first, the last and one of
+`SHARE` between, another than the next method's; with `--hypothesis-profile long` it draws all.
 """
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import settings as hypothesis_settings
 
 from splat_addon.reference import render_exact
 from splat_addon.reference.metrics import psnr
@@ -21,6 +25,9 @@ UNFILTERED = ("quad",)
 
 #: The methods of the presets; they must not fail.
 DEFAULTS = ("mip", "quad")
+
+#: Of so many cases between the first and the last, a method that is no default draws one.
+SHARE = 4
 
 
 def _cases(test: str, method: str, *ids) -> tuple[str, ...]:
@@ -116,6 +123,9 @@ KNOWN_FAILURES = {
     ),
 }
 
+#: The names of all collected cases of this folder, of those left out, too.
+ALL_CASES = set()
+
 #: dB; measured: 70 and more (docs/evidence/numerics.md). Of 64 x 64 pixels one sample that falls the other way costs
 #: 60 dB.
 LEAST_PSNR = 50
@@ -135,23 +145,57 @@ def pytest_generate_tests(metafunc):
     The method is always the first parameter, so that a case has the same name however the suite is called. The table of
     known failures needs these names.
     """
-    named = any("method" in mark.args[0] for mark in metafunc.definition.iter_markers("parametrize"))
-    if "method" in metafunc.fixturenames and not named:
+    if "method" in metafunc.fixturenames and not _names_methods(metafunc.definition):
         metafunc.parametrize("method", METHODS)
 
 
-def pytest_collection_modifyitems(items):
-    """The cases in the table of known failures must fail, by an assertion."""
+def pytest_collection_modifyitems(config, items):
+    """Leaves out what methods need not draw. The cases in the table of known failures must fail, by an assertion."""
     reasons = {case: reason for reason, cases in KNOWN_FAILURES.items() for case in cases}
-    for item in items:
-        if item.name in reasons and "tests/extremes" in item.path.as_posix():
+    ours = [item for item in items if "tests/extremes" in item.path.as_posix()]
+    ALL_CASES.update(item.name for item in ours)
+    for item in ours:
+        if item.name in reasons:
             item.add_marker(pytest.mark.xfail(reason=reasons[item.name], strict=True, raises=AssertionError))
+    if hypothesis_settings.get_current_profile_name() != "long":
+        spared = set(_spared(ours))
+        config.hook.pytest_deselected(items=list(spared))
+        items[:] = [item for item in items if item not in spared]
+
+
+def _spared(items):
+    """The items of methods that are no default and draw another case of the same test."""
+    tests = {}
+    for item in items:
+        if "method" in item.fixturenames and not _names_methods(item):
+            others = tuple((name, repr(v)) for name, v in item.callspec.params.items() if name != "method")
+            tests.setdefault((item.path, item.originalname), {}).setdefault(others, []).append(item)
+    for cases in tests.values():
+        for number, drawn in enumerate(cases.values()):
+            is_end = number in (0, len(cases) - 1)
+            yield from (i for i in drawn if not is_end and not _is_turn(i.callspec.params["method"], number))
+
+
+def _is_turn(method: str, number: int) -> bool:
+    """Whether a method draws the case of this number."""
+    return method in DEFAULTS or (number + list(METHODS).index(method)) % SHARE == 0
+
+
+def _names_methods(definition) -> bool:
+    """Whether a test names the methods that it draws with."""
+    return any("method" in mark.args[0] for mark in definition.iter_markers("parametrize"))
 
 
 @pytest.fixture
 def known_failures():
     """The names of the cases that are known to fail."""
     return [case for cases in KNOWN_FAILURES.values() for case in cases]
+
+
+@pytest.fixture
+def all_cases():
+    """The names of all collected cases, of those that are left out, too."""
+    return ALL_CASES
 
 
 @pytest.fixture
@@ -244,9 +288,9 @@ def lit():
 
 @pytest.fixture
 def camera():
-    """camera(fov=60, size=(64, 64), near=0.01, far=1000, shift=(0, 0)) -> a camera at the origin that looks down -Z."""
+    """camera(fov=60, size=(32, 32), near=0.01, far=1000, shift=(0, 0)) -> a camera at the origin that looks down -Z."""
 
-    def build(fov=60.0, size=(64, 64), near=0.01, far=1000.0, shift=(0.0, 0.0)):
+    def build(fov=60.0, size=(32, 32), near=0.01, far=1000.0, shift=(0.0, 0.0)):
         return Camera.perspective(np.eye(4), np.radians(fov), size, near, far, shift)
 
     return build

@@ -22,7 +22,7 @@ EVERY = 50
 
 @pytest.fixture
 def world():
-    scene, camera = scenes.sphere(4000, (64, 64))
+    scene, camera = scenes.sphere(1000, (32, 32))
     return scene, camera, {n: getattr(scene.surfels[0].surfels, n).copy() for n in LAYOUT}
 
 
@@ -30,17 +30,16 @@ def shot(scene, camera, surfels):
     return Scene((Instance(surfels, materials=scene.surfels[0].materials),), scene.lights, scene.world), camera, None
 
 
-@pytest.mark.parametrize("method", ["mip", "quad"])
 @pytest.mark.parametrize(("field", "value"), UNUSABLE)
-def test_unusable_surfels_are_counted_and_the_rest_is_drawn(field, value, world, render_all):
-    scene, camera, arrays = world
+def test_unusable_surfels_are_counted_and_the_rest_is_kept(field, value, world):
+    _, _, arrays = world
     kept = np.arange(len(arrays["positions"])) % EVERY != 0
     without, _ = valid_surfels(**{n: a[kept] for n, a in arrays.items()})
     arrays[field][~kept] = value
     surfels, skipped = valid_surfels(**arrays)
     assert skipped == np.count_nonzero(~kept)
-    frames = render_all([shot(scene, camera, s) for s in (without, surfels)])
-    np.testing.assert_array_equal(frames[0].color, frames[1].color)
+    for name in LAYOUT:
+        np.testing.assert_array_equal(getattr(surfels, name), getattr(without, name))
 
 
 @pytest.mark.parametrize("value", ABSURD)

@@ -27,7 +27,9 @@ def test_no_splat_hides_itself(angle, epsilon, hold, lit, camera, is_unfiltered)
     Which of several coplanar splats is seen is undefined.
     """
     settings = Settings(supersampling=2, epsilon=epsilon)
-    ((frame, truth),) = hold({"sheet": (lit(sheet(30, 1.0, angle, 2.0)), camera(), settings)}, least=0).values()
+    ((frame, truth),) = hold(
+        {"sheet": (lit(sheet(30, 1.0, angle, 2.0)), camera(size=(64, 64)), settings)}, least=0
+    ).values()
     assert not is_unfiltered or np.count_nonzero(frame.coverage < truth.coverage) <= 2
 
 
@@ -35,5 +37,7 @@ def test_no_splat_hides_itself(angle, epsilon, hold, lit, camera, is_unfiltered)
 def test_no_splat_hides_itself_in_linear_depth(angle, hold, lit, camera, is_unfiltered, monkeypatch):
     monkeypatch.setattr(import_module("splat_addon.rendering.features.depth_format"), "MAX_HARDWARE_DEPTH_RATIO", 0)
     settings = Settings(supersampling=2, epsilon=0)
-    ((frame, truth),) = hold({"sheet": (lit(sheet(30, 1.0, angle, 2.0)), camera(), settings)}, least=0).values()
+    ((frame, truth),) = hold(
+        {"sheet": (lit(sheet(30, 1.0, angle, 2.0)), camera(size=(64, 64)), settings)}, least=0
+    ).values()
     assert not is_unfiltered or np.count_nonzero(frame.coverage < truth.coverage) <= 2

@@ -8,14 +8,14 @@ from splat_addon.reference import scenes
 from splat_addon.reference.extremes import sheet
 from splat_addon.rendering import Camera, look_at
 
-SIZE = (64, 64)
+SIZE = (32, 32)
 ANGLES = [1, 10, 60, 120, 150, 165, 170]
 SHIFTS = [0.5, 2, 5, 20, 100]
 
 
 @pytest.fixture
 def sphere():
-    return scenes.sphere(6000, SIZE)[0]
+    return scenes.sphere(1500, SIZE)[0]
 
 
 def filling(angle):

@@ -15,7 +15,7 @@ def test_a_giant_floor_reaches_to_its_horizon(radius, kind, hold, lit, camera):
     floor = giant_floor(radius)
     wall = discs((0, 0, -6), (radius, 0, 0), (0, radius, 0), (0.9, 0.5, 0.2))
     splats = {"floor": (floor,), "wall": (wall,), "both": (floor, wall)}[kind]
-    hold({kind: (lit(*splats), camera())})
+    hold({kind: (lit(*splats), camera(size=(64, 64)))})
 
 
 def test_a_giant_splat_leaves_small_ones_as_they_are(hold, lit, camera):

@@ -31,7 +31,7 @@ def framed(linear):
     instance = Instance(scene.surfels[0].surfels, matrix, scene.surfels[0].materials)
     distance = 4 * lengths[0]
     eye = distance * (0.9 * axes[:, 2] + 0.3 * axes[:, 1])
-    window = Camera.perspective(look_at(eye, (0, 0, 0), axes[:, 1]), 3 * lengths[1] / distance, (64, 64),
+    window = Camera.perspective(look_at(eye, (0, 0, 0), axes[:, 1]), 3 * lengths[1] / distance, (32, 32),
                                 distance / 100, 10 * distance)  # fmt: skip
     return Scene((instance,), scene.lights, scene.world), window
 

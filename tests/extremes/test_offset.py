@@ -16,7 +16,7 @@ DIRECTION = np.array((1.0, -1.0, 0.5))
 
 @pytest.fixture
 def world():
-    return scenes.torus(6000, (64, 64))
+    return scenes.torus(1500, (32, 32))
 
 
 def moved(offset):

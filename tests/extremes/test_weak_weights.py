@@ -16,7 +16,7 @@ COLOR = np.array((0.3, 0.6, 0.9), np.float32)
 def test_one_splat_has_its_own_colour_up_to_its_rim(side, radius, sum_format, tolerance, render_all, camera):
     splat = discs((0.01, 0.02, -3), (radius, 0, 0), (0, side * radius, 0), COLOR)
     settings = Settings(supersampling=2, shading="flat", transparent_film=True, sum_format=sum_format)
-    (frame,) = render_all([(Scene((splat,)), camera(), settings)])
+    (frame,) = render_all([(Scene((splat,)), camera(size=(64, 64)), settings)])
     covered = frame.coverage > 0
     assert covered.any()
     colors = frame.color[covered][:, :3] / frame.color[covered][:, 3:]
