@@ -37,12 +37,12 @@ from tests.plain import sample_mesh
 
 from .creased import angle_iron, clipped_iron
 
-SIZE = (48, 40)
+SIZE = (32, 26)
 EVERY = Settings(detail_tolerance=0.0, outputs=("color", "depth", "normal", "coverage"))
 SOME = replace(EVERY, detail_tolerance=0.8)
 
 
-def far_torus(count=80_000, size=SIZE):
+def far_torus(count=32_000, size=SIZE):
     """Some twenty surfels per pixel, under a sun and a lamp that cast shadows."""
     scene, camera = scenes.torus(count, size)
     return replace(scene, lights=tuple(replace(light, casts_shadow=True) for light in scene.lights)), camera
@@ -76,13 +76,13 @@ def turned():
 
 
 def solid():
-    scene, camera = scenes.sphere(80_000, SIZE)
+    scene, camera = scenes.sphere(32_000, SIZE)
     return replace(scene, surfels=tuple(replace(i, shape=i.surfels.as_solid()) for i in scene.surfels)), camera
 
 
 def clipped():
     """Half of the surfels end at lines that cut almost nothing away; some of them are drawn individually."""
-    scene, camera = far_torus()
+    scene, camera = far_torus(80_000, (48, 40))
 
     def lines(n):
         return np.stack([np.arange(n) * 7 % 65536 - 32768, np.arange(n) % 2 * 400], axis=1).astype(np.int16)
@@ -107,7 +107,7 @@ def test_fewer_splats_draw_the_same_picture(shot, render):
     # picture with all surfels, 29.8 with these.
     assert psnr(some.color, every.color) > {rough: 35, clipped: 34}.get(shot, 37)
     inside = every.coverage > 0.999
-    assert inside.sum() > 200 and some.coverage[inside].min() > 0.99
+    assert inside.sum() > 80 and some.coverage[inside].min() > 0.99
 
 
 @pytest.mark.parametrize("storage", STORAGES)
@@ -174,7 +174,7 @@ def test_16_bit_storage_draws_the_same_splats(render):
 
 
 def test_a_finer_tolerance_is_nearer_and_draws_more(render):
-    scene, camera = far_torus(160_000)
+    scene, camera = far_torus(64_000)
     truth = render(scene, camera, EVERY).color
     frames = [render(scene, camera, replace(SOME, detail_tolerance=t)) for t in (0.75, 1.5, 3.0, 6.0)]
     assert np.all(np.diff([f.stats["splats_drawn"] for f in frames]) < 0)
@@ -295,14 +295,14 @@ def test_what_is_merged_casts_no_shadow_on_itself(tolerance, resolution, render)
     inside = truth.coverage > 0.999
     falsely = inside & (truth.shadow[..., 0] > 0.999) & (some.shadow[..., 0] < 0.5)
     lost = inside & (truth.shadow[..., 0] < 0.001) & (some.shadow[..., 0] > 0.5)
-    assert some.stats["splats_drawn"] < 0.5 * truth.stats["splats_drawn"] and inside.sum() > 200
+    assert some.stats["splats_drawn"] < 0.5 * truth.stats["splats_drawn"] and inside.sum() > 80
     # a shadow's edge may move by the tolerance
     assert not falsely.any() and lost.sum() <= 0.02 * inside.sum()
 
 
 def test_colors_make_no_shadow_map_finer(render):
     """A ball beside the picture casts the same shadow, to the bit, whatever its surfels' colours are."""
-    ball = scenes.sphere(80_000, SIZE)[0].surfels[0].surfels
+    ball = scenes.sphere(32_000, SIZE)[0].surfels[0].surfels
     colors = np.array(ball.colors)
     colors[:, :3] = np.random.default_rng(0).uniform(0, 1, (len(ball), 3))
     plane = TriangleMesh([(0, -3, 0), (6, -3, 0), (6, 3, 0), (0, 3, 0)], [(0, 1, 2), (0, 2, 3)])
@@ -437,7 +437,7 @@ def test_moved_surfels_keep_their_tree_while_it_fits(render):
 
 
 def test_merged_surfels_as_small_as_a_pixel_do_not_protrude(render):
-    scene, camera = far_torus(320_000, (96, 80))
+    scene, camera = far_torus(140_000, (64, 52))
     settings = replace(EVERY, transparent_film=True, shadow_resolution=0)
     every, some = (render(scene, camera, replace(settings, detail_tolerance=t)) for t in (0.0, 1.0))
     assert some.stats["splats_drawn"] < 0.2 * every.stats["splats_drawn"]

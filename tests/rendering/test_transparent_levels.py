@@ -56,8 +56,10 @@ SUN = Light("sun", energy=3, direction=(-0.3, 0.4, -1), casts_shadow=True)
 BALL = Camera.perspective(look_at((1, -2, 5), (0, 0, 0)), 0.5, (48, 48), 0.1, 50)
 
 
-@pytest.mark.parametrize("method", PEELING)
-@pytest.mark.parametrize(("spread", "most"), [(0.0, 2e-3), (0.3, 0.04)])
+@pytest.mark.parametrize(
+    ("method", "spread", "most"),
+    [*((method, 0.0, 2e-3) for method in PEELING), ("mip", 0.3, 0.04), ("quad", 0.3, 0.04)],
+)
 def test_merged_sheets_cover_what_is_behind_them_by_their_mean_opacity(method, spread, most, render):
     """Of a background b, k sheets of mean opacity a leave b (1 - a)^k. Of a chequered pattern, a merged surfel of three
     by three has five of one kind and four of the other."""
