@@ -2,6 +2,7 @@
 """The blurred levels of a world image agree with the integrals that they stand for."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -44,18 +45,30 @@ def test_a_linear_sky_gives_a_matt_surface_two_thirds_of_its_slope():
     np.testing.assert_allclose(levels(sky)[-1][..., 0], expected, atol=2e-3)
 
 
-@pytest.mark.parametrize("level", range(len(LEVELS)))
-def test_rougher_levels_spread_a_lamp_and_keep_its_light(level):
+def lamp():
+    """A small bright patch."""
     pixels = np.zeros((64, 128, 3), np.float32)
     pixels[40:44, 30:34] = 100
+    return pixels
+
+
+@cache
+def lamp_levels():
+    return levels(lamp())
+
+
+@pytest.mark.parametrize("level", range(len(LEVELS)))
+def test_rougher_levels_spread_a_lamp_and_keep_its_light(level):
+    pixels = lamp()
     directions, share = equirectangular_directions((64, 128))
     mean = (pixels.reshape(-1, 3) * share[:, None]).sum(axis=0)[0] / (4 * np.pi)
-    made = levels(pixels)[level]
+    every = lamp_levels()
+    made = every[level]
     toward = level_directions()[1:-1, 1:-1].reshape(-1, 3)
     cosines = directions @ toward.T
     own = made[1:-1, 1:-1].reshape(-1, 3)[cosines.argmax(axis=1), 0]
     assert (own * share).sum() / (4 * np.pi) == pytest.approx(mean, rel=0.15)
-    assert level == 0 or made.max() < levels(pixels)[level - 1].max()
+    assert level == 0 or made.max() < every[level - 1].max()
 
 
 def test_a_picture_without_surfels_is_the_world(on_device):

@@ -2,6 +2,7 @@
 """Large surfels look like the samples that they replace: where they meet other surfaces, in shadows and from afar."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -39,18 +40,22 @@ def converted(mesh, color, tolerance) -> Instance:
     return Instance(replace(sampled, colors=colors, is_solid=True), materials=CHALK)
 
 
-def still_life(tolerance, lights=(), rug: bool = False) -> Scene:
-    """A floor, and a box that stands in it; a rug of polygons lies half a spacing above the floor."""
+@cache
+def box_in_a_floor(tolerance) -> list[Instance]:
     floor = trimesh.creation.box((8, 8, 0.2)).apply_translation((0, 0, -0.1))
     box = trimesh.creation.box((1, 1, 1.2)).apply_translation((-0.3, -0.3, 0.3))
-    made = [converted(floor, (0.6, 0.6, 0.6), tolerance), converted(box, (0.2, 0.3, 0.8), tolerance)]
+    return [converted(floor, (0.6, 0.6, 0.6), tolerance), converted(box, (0.2, 0.3, 0.8), tolerance)]
+
+
+def still_life(tolerance, lights=(), rug: bool = False) -> Scene:
+    """A floor, and a box that stands in it; a rug of polygons lies half a spacing above the floor."""
     polygons = []
     if rug:
         mesh = trimesh.creation.box((0.9, 1, 0.02)).apply_translation((0.95, -0.4, 0.02))
         polygons = [
             PolygonInstance(make_polygons(mesh.vertices, mesh.faces, color=(0.8, 0.2, 0.1, 1)), materials=CHALK)
         ]
-    return Scene(made, lights, (1, 1, 1) if not lights else (0.1, 0.1, 0.1), polygons=polygons)
+    return Scene(box_in_a_floor(tolerance), lights, (1, 1, 1) if not lights else (0.1, 0.1, 0.1), polygons=polygons)
 
 
 def test_large_surfels_are_known_by_their_blend_depths():

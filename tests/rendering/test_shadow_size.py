@@ -115,8 +115,11 @@ def flip():
     return mean_flip
 
 
-@pytest.mark.parametrize("kind", ["splats", "glass", "polygons"])
-@pytest.mark.parametrize("name", LIGHTS)
+@pytest.mark.parametrize(
+    ("kind", "name"),
+    [*(("splats", name) for name in LIGHTS), ("glass", "sun"), ("glass", "ball"), ("polygons", "low sun"),
+     ("polygons", "spot")],
+)  # fmt: skip
 def test_a_small_picture_is_as_close_to_its_limit_as_with_full_maps(name, kind, scene_of, render, full, flip):
     """Its limit is the mean of many samples with full maps. The difference itself is bounded, too."""
     scene, camera = scene_of(kind, LIGHTS[name]), from_afar(6)
@@ -131,11 +134,11 @@ def test_a_small_picture_is_as_close_to_its_limit_as_with_full_maps(name, kind, 
         assert flip(small, large) < bound, (samples, flip(small, large))
 
 
-@pytest.mark.parametrize("name", ["sun", "ball", "spot"])
+@pytest.mark.parametrize("name", ["sun", "ball"])
 def test_a_dolly_does_not_flicker_where_sizes_change(name, scene_of, render, full, flip):
     """Maps of two texels a pixel would exceed the bounds, for each of these lights."""
     scene, settings = scene_of("splats", LIGHTS[name]), replace(SETTINGS, samples=2)
-    cameras = [from_afar(distance) for distance in np.geomspace(2, 8, 14)]
+    cameras = [from_afar(distance) for distance in np.geomspace(2, 8, 8)]
     found = [max(sides(scene, camera)) for camera in cameras]
     assert len(set(found)) >= 3 and found == sorted(found, reverse=True)
     small = [render(scene, camera, settings).color for camera in cameras]
