@@ -50,7 +50,7 @@ def plain_ray(origin, direction, forward, camera, splats, epsilon):
 
 @pytest.mark.parametrize("projection", ["perspective", "orthographic"])
 def test_a_sheared_mirrored_cloud_around_the_eye_is_what_single_rays_see(projection):
-    size = (16, 12)
+    size = (10, 8)
     pose = look_at((0.4, -1.2, 0.5), (0.1, 0.3, 0.2))
     camera = {
         "perspective": Camera.perspective(pose, 1.2, size, 0.05, 3.0, shift=(0.1, -0.05)),
