@@ -38,8 +38,10 @@ def of_metal(surfels, **fields) -> Scene:
     return Scene((Instance(surfels, materials=(METAL,)),), **{"lights": (SUN,), **fields})
 
 
-@pytest.mark.parametrize(("angle", "pixels_apart"), [(90, 0.75), (90, 1.5), (90, 3), (45, 1.5)])
-@pytest.mark.parametrize("shading", ["principled", "phong"])
+@pytest.mark.parametrize(
+    ("angle", "pixels_apart", "shading"),
+    [(90, 0.75, "principled"), (90, 1.5, "phong"), (90, 3, "principled"), (45, 1.5, "principled"), (45, 1.5, "phong")],
+)
 def test_a_crease_is_lit_as_its_faces_are(shading, angle, pixels_apart, render):
     """The picture is compared with the exact one, which lights rays before it filters them.
 
@@ -70,7 +72,7 @@ def test_where_three_faces_meet_no_pixel_shines(place, render):
 
     Measured: errors of at most 0.004. Lit with two normals, or the mean of three, pixels were 0.017 to 4.4 too bright.
     """
-    camera = Camera.perspective(look_at(place, (1, 1, 1), (0, 0, 1)), 0.35, (48, 48), 0.1, 100)
+    camera = Camera.perspective(look_at(place, (1, 1, 1), (0, 0, 1)), 0.35, (48, 48), 0.1, 100).cropped(14, 14, 20, 20)
     view = np.array(place) - 1
     view /= np.linalg.norm(view)
     lights = []
@@ -80,7 +82,7 @@ def test_where_three_faces_meet_no_pixel_shines(place, render):
     scene = of_metal(box_corner(), lights=tuple(lights))
     exact = render_exact(scene, camera, MIP, pixel_filter="gaussian")
     difference = np.abs(render(scene, camera, MIP).color - exact.color)
-    assert difference[16:32, 16:32].max() < 0.01
+    assert difference[2:18, 2:18].max() < 0.01
 
 
 def tube(radius: float):

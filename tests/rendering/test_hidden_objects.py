@@ -78,18 +78,19 @@ def test_merged_surfels_are_larger_and_nothing_of_them_is_missing(method, render
 
 
 @pytest.mark.parametrize(
-    "settings",
+    ("camera", "settings"),
     [
-        Settings(samples=5),
-        Settings(supersampling=2),
-        Settings(lights_splats=True),
-        Settings(sum_format="float16"),
-        Settings(ambient_occlusion=1.0),
+        ("perspective", Settings(samples=5)),
+        ("parallel", Settings(samples=2)),
+        ("parallel", Settings(supersampling=2)),
+        ("far", Settings(supersampling=2)),
+        ("far", Settings(lights_splats=True)),
+        ("perspective", Settings(sum_format="float16")),
+        ("perspective", Settings(ambient_occlusion=1.0)),
     ],
-    ids=lambda settings: "",
+    ids=str,
 )
-@pytest.mark.parametrize("camera", ["perspective", "parallel", "far"])
-def test_no_setting_draws_another_picture(settings, camera, render, monkeypatch):
+def test_no_setting_draws_another_picture(camera, settings, render, monkeypatch):
     made = {
         "perspective": perspective(),
         "parallel": Camera.orthographic(EYE, 3.0, SIZE, 0.1, 100),

@@ -119,9 +119,8 @@ def two():
 SHOTS = (torus, rough, clipped, two, scenes.textured_plane)
 
 
-@pytest.mark.parametrize("storage", ["float32", "16-bit"])
+@pytest.mark.parametrize(("storage", "tolerance"), [("float32", 0.0), ("16-bit", 1.5)])
 @pytest.mark.parametrize("shot", SHOTS, ids=lambda shot: shot.__name__)
-@pytest.mark.parametrize("tolerance", [0.0, 1.5])
 def test_the_whole_picture_is_that_of_a_render_bit_by_bit(
     shot, storage, tolerance, small_steps, on_device, monkeypatch
 ):

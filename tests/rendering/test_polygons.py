@@ -145,7 +145,7 @@ def test_a_texture_is_filtered_under_the_pixel(method, pixel_filter, least, rend
     camera = Camera.perspective(look_at((0, -1.6, 0.9), (0, 0, 0)), 0.6, SIZE)
     scene = Scene(polygons=(textured,))
     settings = Settings(method=method, shading="flat", supersampling=3 if method == "quad" else 1)
-    exact = render_exact(scene, camera, settings, samples=9, pixel_filter=pixel_filter)
+    exact = render_exact(scene, camera, settings, samples=6, pixel_filter=pixel_filter)
     frame = render(scene, camera, settings)
     inside = exact.coverage > 0.9999
     assert inside.sum() > 3000
