@@ -81,7 +81,7 @@ def test_where_faces_of_the_cube_meet_shadows_are_as_elsewhere(name, share):
 
 
 @pytest.mark.parametrize("name", LAMPS)
-@pytest.mark.parametrize("angle", [0.0, math.pi / 4, 0.6])
+@pytest.mark.parametrize("angle", [0.0, 0.6])
 def test_a_penumbra_is_what_rays_to_the_lamp_say(angle, name, share):
     """The mean error is 0.03 to 0.04, as elsewhere in the picture.
 

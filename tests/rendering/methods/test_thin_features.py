@@ -46,8 +46,7 @@ def scene_of(kind: str, turn: float, tilt: float, opacity: float = 1, distance: 
     return Scene((*near, strip(-40, 40, 100 + distance, turn, tilt, behind, 1 if opacity == 1 else 0.95)))
 
 
-@pytest.mark.parametrize("opacity", [1, 0.6], ids=["opaque", "transparent"])
-@pytest.mark.parametrize(("turn", "tilt"), [(0, 0), (0.3, 0), (1.2, 0.7)])
+@pytest.mark.parametrize(("turn", "tilt", "opacity"), [(0, 0, 1), (0.3, 0, 1), (1.2, 0.7, 1), (1.2, 0.7, 0.6)], ids=str)
 @pytest.mark.parametrize("name", CAMERAS)
 @pytest.mark.parametrize("kind", ["wire", "gap"])
 def test_both_silhouettes_are_filtered(kind, name, turn, tilt, opacity, render):
