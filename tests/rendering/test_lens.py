@@ -54,7 +54,7 @@ def confusion(radius, distance):
 SHARP_VARIANCE = RADIUS**2 / 4 + 1 / 12
 
 
-@pytest.mark.parametrize(("distance", "x"), [(2.0, 0.0), (2.0, 7.0), (3.0, 0.0), (9.0, 0.0), (60.0, -5.0)])
+@pytest.mark.parametrize(("distance", "x"), [(2.0, 0.0), (3.0, 7.0), (60.0, -5.0)])
 def test_the_circle_of_confusion_has_its_diameter(distance, x, render):
     """A disc has the variance radius^2 / 4 along each axis, and the variances of disc and blur add up."""
     total, center, variance = moments(render(Scene((disc(distance, x),)), camera(radius=0.6), MANY).color[..., 3])
@@ -73,7 +73,7 @@ def pinhole():
     return replace(camera(radius=1.0), lens=None)
 
 
-@pytest.mark.parametrize(("blades", "rotation"), [(3, 0.4), (4, 0.0), (6, 1.0)])
+@pytest.mark.parametrize(("blades", "rotation"), [(3, 0.4), (6, 1.0)])
 def test_an_opening_with_corners_has_its_moments(blades, rotation, render):
     """A regular polygon has, along any axis, the variance (2 + cos(2 pi / n)) / 12 times its circumradius squared."""
     made = camera(radius=0.6, blades=blades, rotation=rotation)
