@@ -162,8 +162,9 @@ def test_every_method_draws_them(method, render):
     scene, camera = far_torus()
     every, some = (render(scene, camera, replace(settings, method=method)) for settings in (EVERY, SOME))
     assert some.stats["splats_drawn"] < 0.3 * every.stats["splats"]
-    # without a filter a pixel shows one of many splats, now of fewer
-    assert psnr(some.color, every.color) > (37 if METHODS[method].filters_silhouettes else 19)
+    # without a filter a pixel shows one of many splats, now of fewer; between splats of half their size, gaps are wider
+    least = 37 if METHODS[method].filters_silhouettes else 16 if method == "sprites_printed" else 19
+    assert psnr(some.color, every.color) > least
 
 
 def test_16_bit_storage_draws_the_same_splats(render):
