@@ -115,7 +115,7 @@ class ConversionProperties:
     bake_materials: BoolProperty(
         name="Bake Materials",
         description=(
-            "Let Cycles bake material inputs that cannot be read directly, such as procedural textures. This is "
+            "Let Cycles bake material inputs that cannot be read directly, such as Ambient Occlusion. This is "
             "slow: each input may take longer than the rest of the conversion"
         ),
         default=False,

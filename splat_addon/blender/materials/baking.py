@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Bakes material inputs that cannot be read, such as procedural textures, into surfels with Blender's own bake."""
+"""Bakes material inputs that cannot be read, such as Ambient Occlusion, into surfels with Blender's own bake."""
 
 from __future__ import annotations
 

@@ -425,11 +425,11 @@ GERMAN = {
     "Do not draw them": "Nicht zeichnen",
     "Leave them out, since most are errors of the scanner": ("Weglassen, denn die meisten sind Fehler des Scanners"),
     (
-        "Let Cycles bake material inputs that cannot be read directly, such as procedural textures. This is "
+        "Let Cycles bake material inputs that cannot be read directly, such as Ambient Occlusion. This is "
         "slow: each input may take longer than the rest of the conversion"
     ): (
-        "Cycles Materialeingänge backen lassen, die nicht direkt gelesen werden können, etwa prozedurale "
-        "Texturen. Das ist langsam: Jeder Eingang kann länger dauern als die übrige Umwandlung"
+        "Cycles Materialeingänge backen lassen, die nicht direkt gelesen werden können, etwa "
+        "Umgebungsverdeckung. Das ist langsam: Jeder Eingang kann länger dauern als die übrige Umwandlung"
     ),
     (
         "Let Cycles bake the material inputs that cannot be read directly. This is slow: each input may take "
