@@ -19,13 +19,13 @@ from pathlib import Path
 import environment
 from environment import ROOT, Problem
 from testing import costs, program
-from testing.groups import BLENDER, PLAIN, QUICK, by_process, paths_by_group, split_arguments
+from testing.groups import BLENDER, PLAIN, QUICK, by_process, distribution, paths_by_group, split_arguments
 
 #: pytest's exit codes.
 PASSED, NO_TESTS = 0, 5
 
-#: One process per core, each of which takes a gigabyte; an idle process takes tests from a busy one.
-PARALLEL = ("-n", "auto", "--maxprocesses", "8", "--dist", "worksteal")
+#: One process per core, each of which takes a gigabyte.
+PARALLEL = ("-n", "auto", "--maxprocesses", "8")
 
 #: All cores run tests, so a library's own threads would only compete. Mesa's software rasterizer draws in the calling
 #: thread for 0, in the same time: with a thread of its own, Mesa 22.3 crashed once in glTexImage2D, probably by a race.
@@ -55,7 +55,7 @@ def parse(arguments: list) -> tuple:
 
 def wheel_command(python: Path, device: str, arguments: list) -> list:
     """pytest in the environment; with the device "blender", inside Blender's wheel."""
-    return [str(python), "-m", "pytest", "--device", device, *PARALLEL, *arguments]
+    return [str(python), "-m", "pytest", "--device", device, *PARALLEL, "--dist", distribution(arguments), *arguments]
 
 
 def blender_command(options: argparse.Namespace, python: Path, arguments: list) -> list:

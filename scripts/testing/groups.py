@@ -88,6 +88,12 @@ def paths_by_group(paths: list[str], is_program: bool = False) -> dict[str, list
     return groups
 
 
+def distribution(arguments: list[str]) -> str:
+    """How pytest-xdist hands out the tests that these arguments name: an idle process takes tests from a busy one, but
+    all that look at one window stay in the process that has opened it; two processes would play its script twice."""
+    return "loadfile" if any(_is_within(argument, ONLY_IN_A_WINDOW) for argument in arguments) else "worksteal"
+
+
 def by_process(paths: list[str]) -> list[list[str]]:
     """The test files of each process of a program: those of one folder, FILES at most.
 

@@ -2,6 +2,7 @@
 """scripts/test.py runs each test in the right process and returns the right exit code."""
 
 import importlib.util
+import re
 from pathlib import Path
 
 import pytest
@@ -15,6 +16,7 @@ from testing.groups import (
     PLAIN,
     QUICK,
     by_process,
+    distribution,
     paths_by_group,
     split_arguments,
 )
@@ -44,8 +46,9 @@ def test_a_program_draws_what_any_device_can():
     assert paths_by_group([], is_program=True)[BLENDER][:2] == ["tests/rendering", "tests/extremes"]
 
 
-def test_what_the_wheel_draws_exists():
-    for path in (*ON_BLENDERS_DEVICE, *LEAVES_PICTURES):
+def test_what_the_wheel_draws_and_ci_chooses_exists():
+    chosen = re.findall(r"tests/\S+\.py::\w+", (ROOT / ".ci" / "run").read_text(encoding="utf-8"))
+    for path in (*ON_BLENDERS_DEVICE, *LEAVES_PICTURES, *chosen):
         file, _, name = path.partition("::")
         assert f"def {name}(" in (ROOT / file).read_text(encoding="utf-8") or not name, path
 
@@ -112,6 +115,11 @@ def test_the_whole_folder_runs_in_both_groups():
 def test_a_test_of_the_window_runs_only_where_it_is_named():
     groups = paths_by_group(["tests/window"])
     assert groups[PLAIN] == ["tests/window"] and not groups[BLENDER]
+
+
+def test_tests_of_one_window_stay_in_one_process():
+    assert distribution(["tests/window/test_a_day.py", "-q"]) == distribution(["tests/window"]) == "loadfile"
+    assert distribution(["tests", "--ignore=tests/window"]) == distribution(["-q"]) == "worksteal"
 
 
 def test_a_process_of_a_program_has_a_few_files_of_one_folder():

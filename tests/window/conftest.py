@@ -18,6 +18,9 @@ ROOT = HERE.parents[1]
 WINDOW = ROOT.parent / "shared" / "blender" / "window"
 FOLDER = ROOT / "build" / "window"
 
+#: What tests/conftest.py sets so that Mesa compiles quickly; a window has so many pixels that it would take twice as
+#: long.
+FOR_FEW_PIXELS = ("GALLIVM_PERF", "LP_NATIVE_VECTOR_WIDTH")
 
 #: Seconds after which a window is ended that has not quit by itself. Its scripts give up before, with an error.
 MOST_SECONDS = 900
@@ -34,7 +37,8 @@ def pytest_collection_modifyitems(items):
 def in_a_window(request):
     """in_a_window(script, *arguments, **environment) -> (report, name -> path of a picture that the script saved).
 
-    script: a file in this folder, which `steps.play` runs inside the window.
+    script: a file in this folder, which `steps.play` runs inside the window. A test whose facts are not the driver's
+        is played on one: `@pytest.mark.parametrize("in_a_window", ["opengl"], indirect=True)`.
     """
     if not WINDOW.exists() or subprocess.run([str(WINDOW.with_name("blender")), "--version"]).returncode:
         pytest.skip("no Blender program with a virtual screen is installed beside this checkout")
@@ -48,7 +52,7 @@ def in_a_window(request):
         for old in (shot, report):
             old.unlink(missing_ok=True)
         blender = ["--factory-startup", *arguments, "--gpu-backend", request.param, "--python", HERE / script]
-        everything = {**os.environ, **environment}
+        everything = {name: value for name, value in os.environ.items() if name not in FOR_FEW_PIXELS} | environment
         subprocess.run([WINDOW, shot, str(MOST_SECONDS), *blender, "--", report], cwd=ROOT, env=everything, check=True)
         assert report.exists(), "the script inside Blender did not come to its end"
         facts = json.loads(report.read_text(encoding="utf-8"))

@@ -14,6 +14,7 @@ sys.path[:0] = [str(Path(__file__).resolve().parents[2]), str(Path(__file__).res
 from steps import (  # noqa: E402
     at_rest,
     converted,
+    draw_at_once,
     in_view,
     open_sidebar,
     play,
@@ -70,6 +71,7 @@ def look():
 def steps():
     """Yields the seconds to wait after each step, and returns the report."""
     prepare()
+    draw_at_once()
     yield from redrawn()
     result = convert()
     yield from converted()

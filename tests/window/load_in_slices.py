@@ -80,7 +80,7 @@ def steps():
     yield from redrawn()
     bpy.data.objects.remove(bpy.data.objects["torus"])
     bpy.ops.outliner.orphans_purge(do_recursive=True)
-    yield from redrawn()
+    yield from until(lambda: draws[-1][:2] == (0, ""), "nothing is waited for that is gone")
     report["removed"] = draws[-1][:2]
     add()
     yield from redrawn()

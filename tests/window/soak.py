@@ -137,7 +137,7 @@ def steps():
                 next(kinds)()
                 scene = bpy.context.scene
             bpy.ops.render.render()
-        if frame % max(FRAMES // 40, 1) == 0:
+        if frame % max(FRAMES // 30, 1) == 0:
             series.append({"frame": frame, **figures()})
         yield 0.001
     series.append({"frame": FRAMES, **figures()})

@@ -95,6 +95,11 @@ def converted():
     yield from until(lambda: surfel_objects() and not is_modal(), "the conversion ends")
 
 
+def draw_at_once() -> None:
+    """Draw each sample of the view in one call: in slices, a machine with other work draws the window more often."""
+    bpy.context.scene.surfel_splatting.viewport_rate = 0
+
+
 def watched(draw, drawn: list):
     """A view's function `draw` that also notes, after each call, how many samples its picture has."""
 

@@ -73,10 +73,9 @@ def test_disabling_leaves_nothing_and_enabling_finds_the_engine_again(day):
 
 
 @pytest.mark.parametrize("name", GUIDE)
-def test_the_guide_shows_the_window_as_it_is(name, day, request):
+@pytest.mark.parametrize("in_a_window", ["opengl"], indirect=True)
+def test_the_guide_shows_the_window_as_it_is(name, day):
     """If this fails, copy the new pictures, which lie beside the screenshots, to docs/guide."""
-    if "vulkan" in request.node.name:
-        pytest.skip("the software Vulkan draws Blender's own grid in blocks, so the guide's pictures are of OpenGL")
     now = day[1](GUIDE[name], GUIDE_VIEW)
     Image.fromarray(np.uint8(np.round(now * 255))).save(ROOT / "build" / "window" / f"guide_{name}.png", optimize=True)
     assert difference(now, _read(ROOT / "docs" / "guide" / f"{name}.png")) < AS_OLD

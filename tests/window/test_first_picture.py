@@ -5,13 +5,16 @@ import numpy as np
 import pytest
 from PIL import Image
 
+#: Clicks and letters are the same with every driver.
+pytestmark = pytest.mark.parametrize("in_a_window", ["opengl"], indirect=True)
+
 #: The share of the sidebar's width for names at the left of values; "Pixels per Surfel" just fits.
 ROOM = 0.31
 
 
 @pytest.fixture(scope="module")
 def first(in_a_window):
-    return in_a_window("first_picture.py")[0]
+    return in_a_window("first_picture.py", "--window-geometry", "0", "0", "1000", "700")[0]
 
 
 def test_five_clicks_make_a_lit_picture_of_surfels(first):

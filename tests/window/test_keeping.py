@@ -1,6 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Esc cancels Keep in a File while it writes, and leaves Blender and the disk as they were."""
 
+import pytest
+
+#: Keys and files are the same with every driver.
+pytestmark = pytest.mark.parametrize("in_a_window", ["opengl"], indirect=True)
+
 
 def test_esc_cancels_keeping_surfels_in_a_file(in_a_window):
     report, _ = in_a_window("keep_in_a_file.py", "--enable-event-simulate", "--window-geometry", "0", "0", "800", "600")

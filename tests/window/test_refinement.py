@@ -3,6 +3,9 @@
 
 import pytest
 
+#: When a view is drawn is not up to the driver.
+pytestmark = pytest.mark.parametrize("in_a_window", ["opengl"], indirect=True)
+
 
 @pytest.fixture(scope="module")
 def session(in_a_window):

@@ -9,7 +9,7 @@ import statistics
 
 import pytest
 
-FRAMES = os.environ.get("SURFEL_SOAK", "120,60")
+FRAMES = os.environ.get("SURFEL_SOAK", "90,45")
 
 #: Megabytes by which the last third may exceed the middle one; the textures of one frame take 13.
 GROWTH = 40
