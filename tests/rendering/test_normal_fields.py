@@ -141,3 +141,14 @@ def test_it_is_kept_when_surfels_are_moved(pose):
     one, other = (render_exact(scene, CAMERAS["perspective"], FLAT, samples=1) for scene in scenes)
     both = (one.coverage > 0.5) & (other.coverage > 0.5)
     assert np.count_nonzero(both) > 40 and np.abs(one.normal[both] - other.normal[both]).max() < 2e-3
+
+
+def test_small_objects_that_share_textures_have_their_own(render):
+    """Each has another field; some have none."""
+    fields = (((0.5, 0.2), (-0.1, 0.4)), ((0.0, 0.0), (0.0, 0.0)), ((-0.4, 0.1), (0.3, -0.3)))
+    made = [
+        replace(one_splat(changes=fields[k % 3], places=((k % 3 - 1.2, k // 3 - 1.2, -5.0),)), scales=[(0.5, 0.4)])
+        for k in range(9)
+    ]
+    made[1] = replace(made[1], **dict.fromkeys(NORMAL_FIELDS))
+    assert off(render, Scene(tuple(made)), CAMERAS["orthographic"])[0] < EXACT

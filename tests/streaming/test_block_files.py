@@ -44,6 +44,7 @@ def test_portions_are_runs_of_neighbours(many_portions):
 
 def test_optional_fields_and_an_origin_come_back(tmp_path):
     fields = {"roughness": np.linspace(0, 1, 5000), "clip_line": np.ones((5000, 2), np.int16)}
+    fields["normal_along_y"] = np.arange(10_000, dtype=np.int16).reshape(-1, 2)
     surfels = ball(5000, origin=(1e6, 2.0, 3.0), is_solid=True, **fields)
     write_blocks(tmp_path / "a.surfelblocks", [surfels])
     file, found = BlockFile(tmp_path / "a.surfelblocks"), stored(tmp_path / "a.surfelblocks")
