@@ -59,3 +59,13 @@ def ply(tmp_path):
         return path
 
     return write
+
+
+@pytest.fixture(scope="session")
+def scans():
+    """The folder of files of other programs beside the checkout; a test that needs one is skipped where it is
+    missing."""
+    folder = SCRIPTS.parents[1] / "shared" / "scans"
+    if not folder.is_dir():
+        pytest.skip("the folder of test scans, ../shared/scans, is not here")
+    return folder

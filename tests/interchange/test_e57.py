@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """E57 gives what was written: integers of any width, scaled ones, floats, spherical places, poses and several scans."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -116,12 +114,9 @@ def test_damage_is_one_sentence(read, data, sentence):
     assert len(str(raised.value)) < 300
 
 
-def test_files_of_other_programs(read):
+def test_files_of_other_programs(scans):
     """Six points of two scans by CloudCompare; the numbers are those that libE57Format reads."""
-    folder = Path(__file__).resolve().parents[3] / "shared" / "scans"
-    if not folder.is_dir():
-        pytest.skip("the folder of test scans, ../shared/scans, is not here")
-    points = read_contents(folder / "A_B.e57")
+    points = read_contents(scans / "A_B.e57")
     assert points.attributes["scan"].tolist() == [0, 0, 1, 1, 1, 1]
     assert points.positions[1].tolist() == [-42.64229965209961, 2.057800054550171, 0.5101000070571899]
     assert points.colors[:, :3].tolist() == [[1, 1, 0]] * 2 + [[0, 1, 0]] * 4

@@ -110,3 +110,11 @@ def test_without_the_wheel_a_sentence_says_what_to_do(read, monkeypatch):
     assert len(read(las_file(rows_of(1), 1, 2)).positions) == COUNT
     with pytest.raises(ValueError, match=r"takes the module lazrs, .* or save the file as LAS"):
         read(las_file(rows_of(1), 1, 2, True))
+
+
+def test_files_of_other_programs_hold_the_same_points_in_three_formats(scans):
+    """A COPC file of several pages, LAS with extra bytes, and PTX were made of the same scan."""
+    files = ("simple_with_page.copc.laz", "extrabytes.las", "1.2-with-color.ptx")
+    places = [read_contents(scans / name).positions for name in files]
+    first, *others = (each[np.lexsort(each.T)] for each in places)
+    assert len(first) == 1065 and all(np.abs(other - first).max() < 1e-9 for other in others)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 
 import bpy
@@ -13,7 +14,7 @@ from mathutils import Matrix
 
 from ...interchange import SUFFIXES, PlyPortions
 from ...streaming import id_of
-from ...streaming.layout import SUFFIX
+from ...streaming.layout import MAGIC, SUFFIX
 from ..conversion.file_import import FileImport
 from ..conversion.placement import placed
 from ..conversion.points_settings import (
@@ -95,7 +96,7 @@ tell"""
     def execute(self, context):
         # confirmed in the file browser or a dialog; the same operator may be repeated from the redo panel
         is_asked, self._is_asked = getattr(self, "_is_asked", False), False
-        if not self._name.endswith(SUFFIX):
+        if not self._holds_blocks():
             return self.run_in_thread(context) if is_asked else self.run_now(context)
         try:
             count = self._open(context, absolute(self.filepath), is_own=False)
@@ -103,6 +104,14 @@ tell"""
             return self._fail(error)
         self.report({"INFO"}, said("{name}: {count:,} surfels", name=self._name, count=count))
         return {"FINISHED"}
+
+    def _holds_blocks(self) -> bool:
+        """Whether the file is one of surfels in blocks, by its contents, or else by its name, so that a damaged one is
+        told so."""
+        with suppress(OSError, ValueError), open(absolute(self.filepath), "rb") as stream:
+            if stream.read(len(MAGIC)) == MAGIC:
+                return True
+        return self._name.endswith(SUFFIX)
 
     def _begin(self, context):
         if not self.keeps_in_file:

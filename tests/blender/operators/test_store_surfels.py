@@ -285,11 +285,12 @@ def test_points_cannot_be_kept_in_a_file(saved):
     assert not bpy.data.meshes and len(list(saved.iterdir())) == 2
 
 
-def test_a_file_is_opened_where_it_is(opaque, saved):
-    write_blocks(saved / "statue.surfelblocks", [opaque(2000)])
-    bpy.ops.import_scene.surfels_ply(filepath=str(saved / "statue.surfelblocks"))
+@pytest.mark.parametrize("name", ["statue.surfelblocks", "statue.ply"])
+def test_a_file_is_opened_where_it_is_whatever_its_name(name, opaque, saved):
+    write_blocks(saved / name, [opaque(2000)])
+    bpy.ops.import_scene.surfels_ply(filepath=str(saved / name))
     assert bpy.context.object.name == "statue"
-    assert bpy.context.object.data.surfel_splatting.file == "//statue.surfelblocks"
+    assert bpy.context.object.data.surfel_splatting.file == f"//{name}"
 
 
 def test_a_damaged_file_is_an_error_and_adds_nothing(saved):
