@@ -2,8 +2,8 @@
 """How the shading normal changes over a splat, to first order (Botsch, Spernat, Kobbelt, "Phong Splatting", 2004).
 
 At (u, v) half-axes from the centre the direction of the shading normal is n + u a + v b, where a and b lie in the
-splat's plane: two numbers each, along its unit axes. Any field of unit normals that stays on one side of the plane has
-such a form, which turns with the splat and is the same at every size. The numbers are stored in 16 bits.
+splat's plane: two numbers each, along its unit axes, in 16 bits. To first order, any field of unit normals that stays
+on one side of the plane has such a form, which turns with the splat and is the same at every size.
 """
 
 from __future__ import annotations
@@ -18,7 +18,6 @@ NORMAL_FIELDS = ("normal_along_x", "normal_along_y")
 #: A stored number, and the largest: a slope at which a normal has turned by 76 degrees at the rim.
 NORMAL_STEP = 1 / 8192
 STEEPEST = 32767 * NORMAL_STEP
-
 
 #: The least cosine between a shading normal and its plane's whose change is kept.
 _LEAST_UPRIGHT = 1e-3

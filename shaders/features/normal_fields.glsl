@@ -1,7 +1,7 @@
 // References: Botsch, Spernat, Kobbelt, "Phong Splatting", 2004 (a linear field of normals for each splat);
 //             splat_addon/normal_fields.py, which says what is stored.
 // Summary: the shading normal changes over the splat: its direction is linear in the place within the ellipse. A pixel
-//          that sees more than the splat sees its mean, nearly that at the centre. Twin: reference/normal_fields.py.
+//          that sees more than the splat sees its mean, nearly that at the centre. Twin: reference/rays.py.
 
 #part splat
 // Changes along the half-axes, relative to a normal of length 1 in the view. Those of a normal that points inwards turn
