@@ -17,6 +17,7 @@ from tempfile import TemporaryDirectory
 from splat_addon.rendering import Settings, plan
 from splat_addon.rendering.device.standalone import _declared
 from splat_addon.rendering.plan.programs import describe
+from splat_addon.whole_files import write_whole
 
 TOOLS = "glslangValidator", "spirv-opt", "spirv-dis"
 #: pass -> its vertex shader, if not that of its host
@@ -29,7 +30,7 @@ def missing_tools() -> list[str]:
 
 
 def instructions(scene, camera, settings: Settings) -> Iterator[str]:
-    """Instructions of the vertex / fragment shaders of the visibility, attribute and shading pass; - without a pass."""
+    """Instructions of the vertex / fragment shaders of visibility, attribute and lighting pass; - without a pass."""
     planned = plan(scene, camera, settings)
     passes = {p.name: p for p in planned.passes}
     for name in ("visibility", "attributes", "shading"):
@@ -46,7 +47,7 @@ def instructions(scene, camera, settings: Settings) -> Iterator[str]:
 def _count(text: str, stage: str) -> int:
     with TemporaryDirectory() as folder:
         source, module = Path(folder) / f"shader.{stage}", Path(folder) / "shader.spv"
-        source.write_text(text, encoding="utf-8")
+        write_whole(source, text.encode("utf-8"))
         _run("glslangValidator", "-G", "--aml", "--amb", source, "-o", module)
         _run("spirv-opt", "-O", module, "-o", module)
         return sum(_is_counted(line) for line in _body(_run("spirv-dis", "--no-color", module)))

@@ -9,5 +9,5 @@ METHOD = Method(
     paper="Zwicker et al. 2001, Ren et al. 2002",
     summary="The classic filter, in screen space; blurs silhouettes",
     blurs_rims=True,
-    printed_variance=1.0,  # "a typical choice for the variance matrix of the prefilter is the identity"
+    printed_variance=1.0,  # "a typical choice" for the low-pass's matrix "is the identity"
 )

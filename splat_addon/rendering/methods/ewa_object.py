@@ -11,5 +11,5 @@ METHOD = Method(
     rasterizer="object_space",
     writes_depth=True,
     widens=True,
-    printed_variance=1.0,  # "a typical choice for the variance matrix of the prefilter is the identity"
+    printed_variance=1.0,  # "a typical choice" for the low-pass's matrix "is the identity"
 )

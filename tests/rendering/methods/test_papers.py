@@ -221,7 +221,7 @@ def test_in_one_pass_every_pixel_is_a_splat_and_the_nearest_wins(render):
 @pytest.mark.parametrize("method", ["ewa", "ewa_object"])
 def test_as_printed_ewas_prefilter_has_variance_1(method, on_device):
     """Equation 10: a Gaussian of variance V + J^-1 J^-T in the plane, that is J V J^T + 1 in the picture. V is 1/4 in
-    half-axes. A parallel camera's map is affine. By default the prefilter's variance is 1/2."""
+    half-axes. A parallel camera's map is affine. By default the low-pass's variance is 1/2."""
     disc = discs((0.003, -0.001, -2), (0.031, 0.008, 0.011), (-0.006, 0.019, 0.0034))
     scene, axes = Scene((disc,)), np.concatenate(disc.half_axes())
     camera = Camera.orthographic(np.eye(4), 0.32, (32, 32), 0.1, 10)
