@@ -83,10 +83,11 @@ def test_a_muted_node_hands_on_what_comes_in(tree, color):
 
 
 def test_what_cannot_be_read_is_baked_at_one_click(tree, convert, surfels_of):
-    noise = tree.nodes.new("ShaderNodeTexNoise")
-    tree.links.new(noise.outputs["Color"], principled(tree).inputs["Base Color"])
+    wires = tree.nodes.new("ShaderNodeWireframe")
+    wires.inputs["Size"].default_value = 0.2
+    tree.links.new(wires.outputs[0], principled(tree).inputs["Base Color"])
     (made,) = convert(resolution=8)
-    assert "base colour comes from a Noise Texture node" in made.surfel_record.unread
+    assert "base colour comes from a Wireframe node" in made.surfel_record.unread
     assert np.ptp(surfels_of(made).colors[:, :3], axis=0).max() < 1e-6
     assert bpy.ops.object.surfels_update(bake=True) == {"FINISHED"}
     assert np.ptp(surfels_of(made).colors[:, :3], axis=0).min() > 0.02

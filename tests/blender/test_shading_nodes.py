@@ -287,11 +287,22 @@ def test_images_and_colour_nodes_at_one_place_become_one_image(surface):
     assert np.allclose(texture.image.pixels[..., :3].reshape(64, 3).T, expected, atol=1e-5)
 
 
-def flat_image(c, name, size):
+def test_nodes_see_what_lies_between_the_pixels_of_a_small_image(tmp_path):
+    """A steep ramp after a magnified image has its steps where Cycles has them."""
+
+    def steep(c):
+        node = c.add("ValToRGB", {0: flat_image(c, "small", 4, "Linear")})
+        node.color_ramp.elements[0].position, node.color_ramp.elements[1].position = 0.4, 0.6
+        return node.outputs[0]
+
+    assert compared({"steep": steep}, tmp_path)["steep"].db > 32
+
+
+def flat_image(c, name, size, interpolation="Closest"):
     found = bpy.data.images.new(name, size, size, float_buffer=True)
     found.pixels.foreach_set(np.random.default_rng(len(name)).random(size * size * 4).astype(np.float32))
     found.alpha_mode = "CHANNEL_PACKED"
-    return c.add("TexImage", image=found).outputs[0]
+    return c.add("TexImage", image=found, interpolation=interpolation).outputs[0]
 
 
 def test_what_depends_on_the_view_is_as_seen_straight_on(surface):

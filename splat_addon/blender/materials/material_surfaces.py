@@ -260,10 +260,11 @@ class _Reader:
     def _factor(self, source: ImageSource | AttributeSource, uses_alpha: bool) -> Texture | VertexColors:
         if isinstance(source, AttributeSource):
             return VertexColors(self._layers.color(source.name), source.weights, uses_alpha=False)
+        if source.functions:
+            raise UnreadableError("nodes over an image, which are a graph")
         image = self._layers.image(source, uses_alpha or _is_alpha(source))
         name, matrix, wraps = placement(source.node, self._layers.mesh)
-        weights = (RED if source.is_number else None) if source.functions else source.weights
-        return Texture(image, self._layers.uv(name), matrix, weights, uses_alpha, wraps)
+        return Texture(image, self._layers.uv(name), matrix, source.weights, uses_alpha, wraps)
 
     def _normal_map(self) -> NormalMap | None:
         sockets = self._sockets.get("normal_map")

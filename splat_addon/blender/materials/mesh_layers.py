@@ -3,16 +3,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import bpy
-import numpy as np
 
 from ...sampling import Image
 from .. import working_space
 from ..geometry.attributes import has_surfels_beside_faces
 from .node_products import ImageSource
-from .socket_ranges import finite_factors
 from .texture_images import UnreadableError, linear_pixels
 
 #: Layers that follow from the mesh itself, in object space; no attribute has such a name.
@@ -82,25 +80,13 @@ class MeshLayers:
         key = node.image.session_uid, keep_alpha, node.extension, interpolation, is_apart, space
         if key not in self._images:
             self._images[key] = Image(linear_pixels(node.image, keep_alpha, is_apart), node.extension, interpolation)
-        return _mapped(self._images[key], source) if source.functions else self._images[key]
+        return self._images[key]
 
 
 def _index(names: list[str], name: str) -> int:
     if name not in names:
         names.append(name)
     return names.index(name)
-
-
-def _mapped(image: Image, source: ImageSource) -> Image:
-    """The image with the source's functions applied to its pixels; a single number is stored in the red channel."""
-    pixels = image.pixels.copy()
-    values = pixels[..., :3] if source.weights is None else (pixels @ np.float32(source.weights))[..., None]
-    for function in source.functions:
-        values = function(values)
-    pixels[..., :3] = finite_factors(values)
-    if source.weights is not None:
-        pixels[..., 3] = 1
-    return replace(image, pixels=pixels)
 
 
 def default_color_layer(mesh: bpy.types.Mesh) -> str | None:

@@ -56,9 +56,17 @@ def _on_pixels(graph: Graph, images: list[int]) -> Graph | None:
     return None if any(graph.steps[number].kind in LAYERS for number in order) else found
 
 
+#: Images of fewer pixels along a side are computed finer, up to so many times: they are often magnified, and nodes see
+#: what lies between their pixels.
+_SMALL, _MOST_FINER = 256, 16
+
+
 def _computed(graph: Graph, images: list[Image], alpha: Image | None) -> Image:
     largest = max([*images, *[alpha] * (alpha is not None)], key=lambda image: image.pixels.size)
     height, width = largest.pixels.shape[:2]
+    if largest.interpolation == "Linear":
+        finer = max(1, min(_MOST_FINER, _SMALL // max(height, width)))
+        height, width = finer * height, finer * width
     rows = np.concatenate([_at_pixels(image, width, height) for image in images])
     pixels = np.ones((4, height * width), np.float32)
     pixels[:3] = evaluate(graph, Inputs(height * width, colors=rows))
