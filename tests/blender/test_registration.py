@@ -116,7 +116,7 @@ def test_a_count_that_the_sidebar_waits_for_ends_with_the_add_on(cube):
 def test_the_operator_and_the_sidebar_have_the_same_settings_with_the_same_defaults():
     operator = bpy.ops.object.surfels_from_mesh.get_rna_type().properties
     settings = getattr(bpy.context.scene, ids.CONVERSION_SETTINGS).bl_rna.properties
-    assert len(mesh_settings.PROPERTY_NAMES) == 18
+    assert len(mesh_settings.PROPERTY_NAMES) == 19
     for name in mesh_settings.PROPERTY_NAMES:
         assert (operator[name].default, operator[name].description) == (
             settings[name].default,
