@@ -78,7 +78,8 @@ def sample_camera(camera: Camera, number: int, samples: int) -> Camera:
     Offsets are uniform over the pixel, so the mean of several has a box filter one pixel wide. Their own filters are
     narrower by that, so that a picture is as sharp whatever the number of its samples.
     """
-    variance = _BOX_VARIANCE if samples > 1 else 0.0
+    # a camera that is one of a picture's samples already stays one
+    variance = camera.sample_variance + (_BOX_VARIANCE if samples > 1 else 0.0)
     moved = _moved(camera, *pixel_offset(number, samples)).with_values(sample=number, sample_variance=variance)
     return _through(moved, camera.lens.points(sample_points(1, number)[0, 2:])) if camera.lens else moved
 
