@@ -13,10 +13,14 @@ from splat_addon.blender.engine.render_passes import RENDER_PASSES
 from splat_addon.blender.materials.node_trees import has_switch, uses_nodes
 
 
+#: Random numbers of textures changed, and nothing but the version tells.
+_WITHOUT_A_FEATURE = "bpy.app.version >= _PCG"
+
+
 def test_no_version_is_compared():
     sources = Path(blender.__file__).parent.rglob("*.py")
     compared = [f"{p.name}: {line}" for p in sources for line in p.read_text().splitlines()
-                if re.search(r"app\.version(?!_string)", line)]  # fmt: skip
+                if re.search(r"app\.version(?!_string)", line) and _WITHOUT_A_FEATURE not in line]  # fmt: skip
     assert compared == []
 
 

@@ -67,7 +67,7 @@ def _render_preview(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgra
     """
     settings = final_settings(depsgraph.view_layer, depsgraph.scene, outputs_of(depsgraph.view_layer))
     settings = replace(settings, samples=min(settings.samples, _PREVIEW_SAMPLES))
-    resources = _Resources()
+    resources = _Resources(_PREVIEW_SURFELS)
     try:
         views = [view.name for view in engine.get_result().views]
         for number, view in enumerate(views):
@@ -82,6 +82,9 @@ def _render_preview(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgra
 
 #: A ball of a hundred pixels is smooth with this many.
 _PREVIEW_SAMPLES = 4
+
+#: Of a mesh in a preview, such as the checkered floor that reaches from the camera to the horizon.
+_PREVIEW_SURFELS = 50_000
 
 
 def _hand_over_given(engine, depsgraph) -> None:
@@ -195,13 +198,13 @@ class _Resources:
     they are freed in `render` after the last picture, unless the scene's Persistent Data keeps them. A render that ends
     before the scene's last frame, because of Esc or a shorter range, also leaves them to the next render.
 
-    are_images_edited: whether images may have been edited since the last picture.
+    are_images_edited: whether images may have been edited since the last picture. most: surfels of a sampled mesh.
     """
 
-    def __init__(self):
+    def __init__(self, most: int | None = None):
         self.are_images_edited = False
         self.store = SurfelStore()
-        self.live_meshes = LiveMeshes()
+        self.live_meshes = LiveMeshes(most)
         self.renderer = Renderer(open_device("blender"))
 
 

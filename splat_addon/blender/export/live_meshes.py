@@ -210,9 +210,11 @@ class LiveMeshes:
     counts: about the last frame. "polygon_meshes" and their "triangles": drawn as polygons; "meshes" and their
         "surfels": sampled meshes. Of the sampled meshes, "sampled" were sampled in this frame and "followed" an earlier
         sampling; "stretched" counts those sampled again because they had stretched too far.
+    most: surfels of a mesh; it is sampled coarser if there would be more. Without, more than MAX_SURFELS are refused.
     """
 
-    def __init__(self):
+    def __init__(self, most: int | None = None):
+        self._most = most
         self._kept: dict[tuple, LiveMesh] = {}
         self._names: dict[tuple, tuple] = {}
         self._frame: dict[tuple, LiveMesh] = {}
@@ -352,7 +354,9 @@ class LiveMeshes:
             live.deforming = None
             spacing = live.spacing_for(density, depsgraph)
         predicted = predict_count(mesh, spacing=spacing)
-        if predicted > MAX_SURFELS:
+        if self._most is not None and predicted > self._most:
+            spacing *= math.sqrt(predicted / self._most)
+        elif predicted > MAX_SURFELS:
             raise ValueError(f"It would be {predicted:,} surfels and the limit is {MAX_SURFELS:,}; sample it coarser.")
         live.deforming = _deforming(mesh, spacing, texture_mapped, live.parts is None, live.bends)
         live.density, live.spacing = density, spacing

@@ -85,6 +85,8 @@ def test_a_socket_that_is_passed_over_is_named_when_it_is_set_or_linked(principl
 def test_a_socket_that_is_read_once_for_a_material_is_named_when_it_is_linked(principled, name):
     tree = bpy.data.materials["paint"].node_tree
     tree.links.new(tree.nodes.new("ShaderNodeValue").outputs[0], principled.inputs[name])
+    assert said_of(principled) == []
+    tree.links.new(tree.nodes.new("ShaderNodeTexNoise").outputs[0], principled.inputs[name])
     (sentence,) = said_of(principled)
     assert sentence.startswith(f"The material 'paint' textures {name}, which this engine has once for a material")
 
