@@ -12,7 +12,6 @@ from splat_addon import blender
 from splat_addon.blender.engine.render_passes import RENDER_PASSES
 from splat_addon.blender.materials.node_trees import has_switch, uses_nodes
 
-
 #: Random numbers of textures changed, and nothing but the version tells.
 _WITHOUT_A_FEATURE = "bpy.app.version >= _PCG"
 

@@ -376,6 +376,14 @@ def test_too_many_surfels_are_refused_with_a_sentence(live, picture, said):
     assert "Plane is left out: It would be 400,000,000 surfels and the limit is 100,000,000" in said()
 
 
+def test_a_preview_samples_large_meshes_coarsely(live):
+    bpy.ops.mesh.primitive_plane_add(size=2)
+    live.mesh_resolution = 20_000
+    found, _ = export_scene(bpy.context.evaluated_depsgraph_get(), SurfelStore(), LiveMeshes(most=400))
+    (instance,) = found.surfels
+    assert 300 < len(instance.surfels) < 500
+
+
 @pytest.mark.parametrize("form", ["POLYGONS", "SURFELS"])
 def test_faces_without_a_place_and_strays_among_surfels_are_counted_in_notes(form, add_mesh):
     axis = np.linspace(0, 1, 9)
