@@ -190,7 +190,7 @@ def test_what_is_cut_away_neither_shows_nor_hides(method, render):
     behind = discs((0, 0, -6), (5, 0, 0), (0, 5, 0), (0, 1, 0))
     first, _ = halves()
     color = render(Scene((first, behind)), STRAIGHT, replace(FLAT, method=method, supersampling=1)).color
-    assert np.allclose(color[36, 36, :3], (0, 1, 0), atol=1e-3) and np.allclose(color[60, 60, :3], 1, atol=1e-3)
+    assert np.allclose(color[42, 42, :3], (0, 1, 0), atol=1e-3) and np.allclose(color[54, 54, :3], 1, atol=1e-3)
 
 
 @pytest.mark.parametrize("mirrored", [False, True])

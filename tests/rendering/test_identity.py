@@ -26,6 +26,7 @@ from splat_addon.rendering.identity import NUMBERED, Identities, nearest_numbers
 from splat_addon.rendering.methods import METHODS
 from splat_addon.rendering.scene.polygons import make_polygons
 from splat_addon.surfels import Surfels
+from tests.rendering.printed_sizes import for_method
 
 SIZE = (40, 30)
 CAMERA = Camera.perspective(np.eye(4), 0.9, SIZE)
@@ -85,7 +86,7 @@ def test_no_hash_is_a_number_that_files_lose():
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("supersampling", [1, 3])
 def test_shares_add_up_to_the_coverage(method, supersampling, render):
-    frame = render(three(), CAMERA, settings(method=method, supersampling=supersampling))
+    frame = render(for_method(three(), method), CAMERA, settings(method=method, supersampling=supersampling))
     matte = frame.cryptomatte
     total = sum(matte.share_of(name) for name in ("wall", "ball", "disc"))
     assert all(matte.share_of(name).max() > 0.99 for name in ("wall", "ball", "disc"))
@@ -127,7 +128,8 @@ def test_polygons_are_told_apart_from_surfels(method, render):
     slots = np.repeat((0, 1), 3).astype(np.int32)
     polygons = make_polygons(corners, [(0, 1, 2), (0, 2, 3)], materials=slots)
     board = PolygonInstance(polygons, moved(0, -0.5, -3.8), (Material(index=8), Material(index=9)), name="b", index=4)
-    frame = render(replace(three(), polygons=(board,)), CAMERA, settings(method=method, outputs=(*OUTPUTS, "depth")))
+    scene = replace(for_method(three(), method), polygons=(board,))
+    frame = render(scene, CAMERA, settings(method=method, outputs=(*OUTPUTS, "depth")))
     is_board = np.abs(frame.depth - 3.8) < 1e-3
     assert is_board.sum() > 40 and (frame.object_index == 4)[is_board].mean() > 0.97
     assert {8, 9} <= set(np.unique(frame.material_index[frame.object_index == 4])) <= {8, 9}

@@ -17,6 +17,7 @@ from splat_addon.rendering.scene import SurfaceTexture
 from splat_addon.sampling import TriangleMesh
 from splat_addon.sampling.attributes.texture_seams import corner_seams
 from splat_addon.surfels import Surfels, concatenate
+from tests.rendering.printed_sizes import for_method
 
 SIZE = 64
 #: method -> the pixel filter of its picture; the others have the Gaussian.
@@ -74,7 +75,7 @@ def test_every_method_shows_what_the_reference_shows(method, render):
     settings = Settings(method=method, supersampling=2 if method == "quad" else 1)
     # the truth of a filter is that of every method that has it
     exact = render_exact(scene, camera, Settings(), samples=6, pixel_filter=FILTERS.get(method, "gaussian"))
-    frame = render(scene, camera, settings)
+    frame = render(for_method(scene, method), camera, settings)
     assert psnr(frame.color, exact.color) > least
 
 
