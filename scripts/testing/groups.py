@@ -9,8 +9,9 @@ from environment import ROOT
 
 PLAIN, BLENDER = "plain", "blender"
 
-#: Folders that only Blender can run; tests of a window need a screen and run only if named.
-ONLY_IN_BLENDER = ("tests/blender", "tests/extension")
+#: Folders that only Blender can run, the one first whose tests share something dear: only the end of a run is divided
+#: among the processes. Tests of a window need a screen and run only if named.
+ONLY_IN_BLENDER = ("tests/extension", "tests/blender")
 ONLY_IN_A_WINDOW = ("tests/window",)
 #: Folders whose tests draw on the device that they are given. A Blender program draws them all, with its own driver.
 ON_ANY_DEVICE = ("tests/rendering", "tests/extremes")

@@ -39,7 +39,7 @@ def named(group):
 def test_without_a_path_both_groups_run():
     groups = paths_by_group([])
     assert named(groups[PLAIN]) == ["tests"]
-    assert groups[BLENDER] == [*ON_BLENDERS_DEVICE, "tests/blender", "tests/extension"]
+    assert groups[BLENDER] == [*ON_BLENDERS_DEVICE, "tests/extension", "tests/blender"]
 
 
 def test_a_program_draws_what_any_device_can():
