@@ -48,8 +48,10 @@ def test_one_disc_fades_by_its_kernel(threshold, side, sum_format, render):
 
 
 def test_as_printed_what_is_below_the_threshold_is_not_normalised(render):
-    """The view-independent paper, section 5: "we perform per-pixel normalization on those pixels whose summation of
-    filter weights is greater than a threshold"; the others keep their sums of weighted colours, over nothing."""
+    """The view-independent paper, section 5: "Hence, in the normalization pass, we perform per-pixel normalization on
+    those pixels whose summation of filter weights is not close to unity and is greater than a threshold to avoid
+    artifacts in silhouette edge pixels." The others keep their sums of weighted colours, over nothing; those close to
+    unity are normalised here, too, which changes them little."""
     disc = discs((0, 0, -3), (1, 0, 0), (0, 1, 0), (0.2, 0.5, 0.8))
     threshold = 0.5
     settings = Settings(method="quad", shading="flat", edge_threshold=threshold, transparent_film=True, as_printed=True)

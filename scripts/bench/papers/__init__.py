@@ -55,7 +55,7 @@ TABLES = {
             "Phong, each splat lit": replace(ONE, method="raycast_printed", lights_splats=True),
             "Sprites (2003)": replace(ONE, method="sprites"),
         },
-        "NPR 1.0 to 1.3; with shadows 1.4 to 1.5; sprites 0.8 to 1.2",
+        "NPR 1.0 to 1.3; with shadows 1.4 to 1.6 (Phong), with NPR 1.3 to 1.6; sprites 0.8 to 1.3",
         "Shadow maps have 512 texels a side; sprites write their depth, which costs the early test.",
     ),
     "Guennebaud et al. 2006, table 1": (
