@@ -53,6 +53,8 @@ def test_the_progress_of_several_views_ends_at_1(scene, monkeypatch):
     turns, views = [], [SimpleNamespace(name="left"), SimpleNamespace(name="right")]
     monkeypatch.setattr(final_render, "_picture", lambda *about: (turns.append(about[-1]), None))
     monkeypatch.setattr(final_render, "hand_over", lambda *about: None)
+    resources = SimpleNamespace(renderer=SimpleNamespace(release=lambda: None))
+    monkeypatch.setattr(final_render, "_Resources", lambda most: resources)  # Blender 4.5 draws inside a render alone
     engine = SimpleNamespace(
         is_preview=True, get_result=lambda: SimpleNamespace(views=views), active_view_set=lambda view: None
     )
