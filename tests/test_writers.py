@@ -19,6 +19,7 @@ ALLOWED = {
         "write_bytes": "scratch in a temporary folder",
         "ZipFile": "in memory",
     },
+    "scripts/bench/fuzz/scan_formats.py": {"write_bytes": "scratch in a temporary folder"},
     "scripts/bench/fuzz_scenes/__init__.py": {"open": "what workers print, while they do"},
     "scripts/bench/fuzz_scenes/worker.py": {"fdopen": "a pipe"},
     "scripts/bench/streaming.py": {"unlink": "its own file, after the last measurement"},

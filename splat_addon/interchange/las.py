@@ -94,6 +94,8 @@ def _portions(path: str | os.PathLike, header: _Header, said: list[str]) -> Iter
             yield done / header.count, without(table, deleted)
     if withheld:
         said.append(f"Left out {withheld:,} points that the file marks as deleted (withheld)")
+    if extra := header.record["extra"].itemsize:
+        said.append(f"Passed over {extra} bytes of each point that the file adds to its point format (extra bytes)")
 
 
 def _reader(stream: BinaryIO, size: int, header: _Header) -> Callable[[int, int], bytes]:

@@ -7,8 +7,9 @@ from collections.abc import Callable
 
 import numpy as np
 
+from . import numbers
 from .colors import stacked
-from .numbers import divided, modulo, power, snapped, wrapped
+from .numbers import divided
 
 
 def dot(a, b) -> np.ndarray:
@@ -40,13 +41,16 @@ def _refracted(a, b, ratio):
     return np.where(rest < 0, 0, ratio * a - (ratio * along + np.sqrt(np.maximum(rest, 0))) * normal)
 
 
+#: Operations of the Math node that act on each component.
+_BY_COMPONENT = (
+    *("ADD", "SUBTRACT", "MULTIPLY", "DIVIDE", "MULTIPLY_ADD", "ABSOLUTE", "POWER", "SIGN", "MINIMUM", "MAXIMUM"),
+    *("FLOOR", "CEIL", "MODULO", "WRAP", "SNAP", "SINE", "COSINE", "TANGENT"),
+)
+
 #: operation of a Vector Math node -> its number of vectors, and its function. The scale comes as a fourth input.
 OPERATIONS: dict[str, tuple[int, Callable]] = {
-    "ADD": (2, np.add),
-    "SUBTRACT": (2, np.subtract),
-    "MULTIPLY": (2, np.multiply),
-    "DIVIDE": (2, divided),
-    "MULTIPLY_ADD": (3, lambda a, b, c: a * b + c),
+    **{name: numbers.OPERATIONS[name] for name in _BY_COMPONENT},
+    "FRACTION": numbers.OPERATIONS["FRACT"],
     "CROSS_PRODUCT": (2, cross),
     "PROJECT": (2, lambda a, b: b * divided(dot(a, b), dot(b, b))),
     "REFLECT": (2, _reflected),
@@ -55,21 +59,7 @@ OPERATIONS: dict[str, tuple[int, Callable]] = {
     "DISTANCE": (2, lambda a, b: length(a - b)),
     "LENGTH": (1, length),
     "NORMALIZE": (1, unit),
-    "ABSOLUTE": (1, np.abs),
-    "POWER": (2, power),
-    "SIGN": (1, np.sign),
-    "MINIMUM": (2, np.minimum),
-    "MAXIMUM": (2, np.maximum),
     "ROUND": (1, np.round),
-    "FLOOR": (1, np.floor),
-    "CEIL": (1, np.ceil),
-    "FRACTION": (1, lambda a: a - np.floor(a)),
-    "MODULO": (2, modulo),
-    "WRAP": (3, wrapped),
-    "SNAP": (2, snapped),
-    "SINE": (1, np.sin),
-    "COSINE": (1, np.cos),
-    "TANGENT": (1, np.tan),
 }
 
 #: Operations that use the number Scale beside their vectors.

@@ -12,6 +12,7 @@ SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 if str(SCRIPTS) not in sys.path:
     sys.path.append(str(SCRIPTS))
 
+from splat_addon.interchange import read_contents  # noqa: E402
 from splat_addon.surfels import LAYOUT, Surfels  # noqa: E402
 
 
@@ -45,6 +46,17 @@ def assert_same_bits():
         assert (a.origin == b.origin).all() and a.is_solid == b.is_solid
 
     return check
+
+
+@pytest.fixture
+def read(tmp_path):
+    """read(bytes or text, **options) -> what a file with a name that says nothing gives."""
+
+    def run(data, **options):
+        (tmp_path / "scan").write_bytes(data.encode("latin-1") if isinstance(data, str) else data)
+        return read_contents(tmp_path / "scan", **options)
+
+    return run
 
 
 @pytest.fixture

@@ -13,17 +13,6 @@ COUNT = 900
 TURN = pose((0.5, 0.5, 0.5, 0.5), (4e5, 5e6, 100.0))
 
 
-@pytest.fixture
-def read(tmp_path):
-    """read(bytes) -> the points of a file with a name that says nothing."""
-
-    def run(data):
-        (tmp_path / "scan").write_bytes(data)
-        return read_contents(tmp_path / "scan")
-
-    return run
-
-
 def cartesian(random, count=COUNT, kind=np.float64):
     """Three columns, and (count, 3) their values."""
     places = random.uniform(-9, 9, (count, 3)).astype(kind)

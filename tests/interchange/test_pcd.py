@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from scan_files.formats import lzf_packed, pcd_file
-from splat_addon.interchange import lzf, read_contents
+from splat_addon.interchange import lzf
 
 ENCODINGS = ("ascii", "binary", "binary_compressed")
 
@@ -20,17 +20,6 @@ def rows():
         made[name] = random.uniform(-5, 5, 300)
     made["rgb"] = (random.integers(0, 256, 300) * 0x10000 + 0x8040).astype(np.uint32).view(np.float32)
     return made
-
-
-@pytest.fixture
-def read(tmp_path):
-    """read(bytes) -> the points of a file with a name that says nothing."""
-
-    def run(data):
-        (tmp_path / "scan").write_bytes(data)
-        return read_contents(tmp_path / "scan")
-
-    return run
 
 
 @pytest.mark.parametrize("encoding", ENCODINGS)

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from scan_files.formats import spz_file
-from splat_addon.interchange import read_contents
 from splat_addon.quaternions import quaternion_axes
 
 COUNT = 200
@@ -19,17 +18,6 @@ def gaussians():
     random = np.random.default_rng(0)
     quaternions = random.normal(size=(COUNT, 4))
     return random.uniform(-5, 5, (COUNT, 3)), quaternions / np.linalg.norm(quaternions, axis=1, keepdims=True)
-
-
-@pytest.fixture
-def read(tmp_path):
-    """read(bytes) -> the Gaussians of a file with a name that says nothing."""
-
-    def run(data):
-        (tmp_path / "scan").write_bytes(data)
-        return read_contents(tmp_path / "scan")
-
-    return run
 
 
 @pytest.mark.parametrize(("version", "degree", "angle"), [(1, 0, 0.3), (2, 3, 0.3), (3, 1, 0.01)])

@@ -5,18 +5,7 @@ import numpy as np
 import pytest
 
 from scan_files.formats import ptx_scan
-from splat_addon.interchange import read_contents, text_rows
-
-
-@pytest.fixture
-def read(tmp_path):
-    """read(text) -> the points of a file with a name that says nothing."""
-
-    def run(text):
-        (tmp_path / "scan").write_bytes(text.encode("latin-1"))
-        return read_contents(tmp_path / "scan")
-
-    return run
+from splat_addon.interchange import text_rows
 
 
 @pytest.mark.parametrize(

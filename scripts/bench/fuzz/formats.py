@@ -7,7 +7,6 @@ be finite. It may raise `Coarser`.
 
 from __future__ import annotations
 
-import gzip
 import io
 import json
 import zipfile
@@ -16,21 +15,18 @@ from pathlib import Path
 
 import numpy as np
 
+from bench.fuzz import scan_formats
 from bench.fuzz.changes import changed_array, changed_bytes, changed_json, changed_text, some, times
+from bench.fuzz.contents import arrays_of, ball, surfels_of
 from bench.fuzz.edited_blocks import EditedBlocks
-from scan_files.e57 import Scan, content_of, e57_file, floats, pose, whole, with_checksums
-from scan_files.formats import las_file, las_rows, pcd_file, ptx_scan, spz_file
 from splat_addon.hierarchy import Sight
 from splat_addon.interchange import (
     PlyPortions,
-    Points,
     StoredSurfels,
-    offset_for,
     read_contents,
     write_gaussian_ply,
     write_ply,
 )
-from splat_addon.quaternions import axes_quaternions
 from splat_addon.rendering import Frame
 from splat_addon.rendering.assembly.frame_parts import Part, joined_parts, write_part
 from splat_addon.sampling import (
@@ -39,7 +35,6 @@ from splat_addon.sampling import (
     read_block,
     read_request,
     sample_block,
-    surfels_from_points,
     write_blocks,
 )
 from splat_addon.streaming import Stream, Unreadable, check, described
@@ -49,24 +44,6 @@ from splat_addon.surfels import Surfels, portions
 
 class Coarser(Exception):
     """A file was drawn with coarser surfels; its text is the sentence."""
-
-
-def ball(count: int, **fields) -> Surfels:
-    """Surfels on the unit sphere."""
-    k = np.arange(count) + 0.5
-    z, turn = 1 - 2 * k / count, np.pi * (1 + 5**0.5) * k
-    r = np.sqrt(1 - z * z)
-    normals = np.stack([r * np.cos(turn), r * np.sin(turn), z], axis=1)
-    across = np.stack([-np.sin(turn), np.cos(turn), 0 * z], axis=1)
-    return Surfels(
-        positions=normals,
-        rotations=axes_quaternions(across, np.cross(normals, across), normals),
-        scales=np.full((count, 2), 1.25 * (4 * np.pi / count) ** 0.5),
-        normals=normals,
-        colors=np.stack([z * z, r * r, 0 * z, 1 - 0.3 * (z > 0)], axis=1),
-        materials=np.arange(count) % 2,
-        **fields,
-    )
 
 
 def sight(eye: tuple, tolerance: float, plane: tuple = (0, 0, 0, 1)) -> Sight:
@@ -119,7 +96,7 @@ class BlockFiles:
         with_memory = Stream(self._path, int(some(random, (0, 1 << 20, 1 << 30))))
         try:
             if is_changed:
-                yield from _arrays(with_memory.seen(VIEWS[0], None).surfels)
+                yield from arrays_of(with_memory.seen(VIEWS[0], None).surfels)
                 with open(self._path, "r+b") as stream:
                     stream.truncate(int(random.integers(len(file) + 1)) if random.random() < 0.3 else len(file))
                     stream.write(file)
@@ -128,7 +105,7 @@ class BlockFiles:
             with_memory.close()
 
     def _seen(self, stream: Stream, random, is_changed: bool) -> Iterator[np.ndarray]:
-        yield from _arrays(stream.coarsest)
+        yield from arrays_of(stream.coarsest)
         sentence = ""
         for number, view in enumerate((*VIEWS, *VIEWS)):
             stream.begin_frame()
@@ -139,10 +116,10 @@ class BlockFiles:
                 seen, sentence = error.seen, str(error)
             if len(seen.surfels) > stream.file.rows:
                 raise AssertionError("more surfels than rows")
-            yield from _arrays(seen.surfels)
+            yield from arrays_of(seen.surfels)
         if not is_changed:
             yield from (np.array(described(self._path)[corner]) for corner in ("low", "high"))
-            yield from _arrays(stream.at_most(1000))
+            yield from arrays_of(stream.at_most(1000))
             check(self._path)
         if sentence:
             raise Coarser(sentence)
@@ -172,10 +149,10 @@ class PlyFiles:
 
     def read(self, file: bytes, random) -> Iterator[np.ndarray]:
         self._path.write_bytes(file)
-        yield from _surfels_of(self._path)
+        yield from surfels_of(self._path)
         if isinstance(read_contents(self._path), StoredSurfels):
             for part in PlyPortions(self._path, 100):
-                yield from _arrays(part)
+                yield from arrays_of(part)
 
 
 def surfel_ply(folder: Path) -> PlyFiles:
@@ -211,134 +188,6 @@ def point_ply(folder: Path) -> PlyFiles:
         top = f"ply\nformat {word} 1.0\ncomment made\nelement vertex 200\n" + "\n".join(head) + f"\n{faces}end_header\n"
         sound.append(top.encode() + body)
     return PlyFiles(folder, sound)
-
-
-class ScanFiles:
-    """A format that scanners write. sound: the files' bytes. suffix: of files that are kept."""
-
-    def __init__(self, folder: Path, suffix: str, sound: list[bytes]):
-        self.suffix = suffix
-        self._path, self._sound = folder / f"a{suffix}", sound
-
-    def damaged(self, random) -> bytes:
-        return self.changed(random, some(random, self._sound))
-
-    def changed(self, random, sound: bytes) -> bytes:
-        return changed_bytes(random, sound)
-
-    def read(self, file: bytes, random) -> Iterator[np.ndarray]:
-        self._path.write_bytes(file)
-        yield from _surfels_of(self._path)
-
-
-class TextFiles(ScanFiles):
-    """Text, whose words and lines are damaged, or its bytes."""
-
-    def changed(self, random, sound: bytes) -> bytes:
-        if random.random() < 0.3:
-            return changed_bytes(random, sound)
-        return changed_text(random, sound.decode("latin-1")).encode("latin-1")
-
-
-class HeadedFiles(ScanFiles):
-    """Files with a head of text before their data."""
-
-    #: the last line of the head begins so
-    end = b"\nDATA"
-
-    def changed(self, random, sound: bytes) -> bytes:
-        kind = random.random()
-        if kind < 0.3:
-            return changed_bytes(random, sound)
-        at = sound.index(b"\n", sound.index(self.end) + 1)
-        head, body = sound[:at], sound[at:]
-        if kind < 0.8:
-            head = changed_text(random, head.decode("latin-1")).encode("latin-1")
-        return head + (changed_bytes(random, body) if kind > 0.7 else body)
-
-
-class LasFiles(ScanFiles):
-    """LAS and LAZ, whose head of numbers is damaged more often than their points."""
-
-    def changed(self, random, sound: bytes) -> bytes:
-        if random.random() < 0.5:
-            return changed_bytes(random, sound)
-        head = 500
-        return changed_bytes(random, sound[:head]).ljust(head, b"\0")[:head] + sound[head:]
-
-
-class E57Files(ScanFiles):
-    """E57, mostly with checksums that are right again."""
-
-    def changed(self, random, sound: bytes) -> bytes:
-        kind = random.random()
-        if kind < 0.2:
-            return changed_bytes(random, sound)
-        content = content_of(sound)
-        if kind < 0.7:
-            start = content.index(b"<?xml")
-            text = content[start:].rstrip(b"\0").decode("latin-1").replace('"', ' " ').replace("<", "\n <")
-            text = changed_text(random, text).replace(' " ', '"').replace("\n <", "<").encode("latin-1")
-            content = content[:start] + text.ljust(len(content) - start, b"\0")
-        else:
-            content = changed_bytes(random, content)
-        return with_checksums(content.ljust(-(-len(content) // 1020) * 1020, b"\0"))
-
-
-class SpzFiles(ScanFiles):
-    """SPZ, whose packed bytes are damaged, or those inside."""
-
-    def changed(self, random, sound: bytes) -> bytes:
-        if random.random() < 0.3:
-            return changed_bytes(random, sound)
-        return gzip.compress(changed_bytes(random, gzip.decompress(sound)), 1, mtime=0)
-
-
-def las(folder: Path) -> LasFiles:
-    return LasFiles(folder, ".las", [las_file(las_rows(n, 150, n % 3), n, 4 if n > 5 else 2) for n in range(11)])
-
-
-def laz(folder: Path) -> LasFiles:
-    kinds = (0, 1, 2, 3, 6, 7, 8)
-    return LasFiles(folder, ".laz", [las_file(las_rows(n, 150), n, 4 if n > 5 else 2, True) for n in kinds])
-
-
-def e57(folder: Path) -> E57Files:
-    places = [floats(f"cartesian{axis}", ball(150).positions[:, k].copy()) for k, axis in enumerate("XYZ")]
-    number = np.arange(150)
-    colors = [whole(f"color{name}", number, 0, 255) for name in ("Red", "Green", "Blue")]
-    turned = [whole("sphericalRange", 7 * number, 0, 2**37, 1e-3), whole("sphericalAzimuth", number, -314, 314, 1e-2)]
-    turned += [whole("sphericalElevation", number - 75, -157, 157, 1e-2), whole("timeStamp", number, 0, 2**60)]
-    turned += [whole("sphericalInvalidState", number % 2, 0, 2)]
-    scans = [Scan([*places, *colors]), Scan(turned, pose((0.5, 0.5, 0.5, 0.5), (4e5, 5e6, 100.0)))]
-    return E57Files(folder, ".e57", [e57_file(scans), e57_file(scans[:1], packet=100)])
-
-
-def ptx(folder: Path) -> TextFiles:
-    points = np.column_stack([ball(100).positions, np.linspace(0, 1, 100), np.tile([10, 20, 200], (100, 1))])
-    scans = ptx_scan(points, 10, np.eye(4)), ptx_scan(points[:, :4], 20, np.eye(4)[[1, 2, 0, 3]])
-    return TextFiles(folder, ".ptx", [(scans[0] + scans[1]).encode(), scans[1].encode()])
-
-
-def text(folder: Path) -> TextFiles:
-    rows = [[*map(float, place), 7.5, 9, 8, 200] for place in ball(150).positions]
-    plain, commas = ("".join(join.join(map(str, row)) + "\n" for row in rows) for join in (" ", ","))
-    sound = (f"150\n{plain}", f"X,Y,Z,Intensity,R,G,B\n{commas}", commas.replace(".", ";").replace(",", " "), plain)
-    return TextFiles(folder, ".xyz", [each.encode() for each in sound])
-
-
-def pcd(folder: Path) -> HeadedFiles:
-    surfels = ball(150)
-    rows = np.zeros(150, [("x", "<f4"), ("y", "<f4"), ("z", "<f4"), ("rgb", "<f4"), ("id", "<u2", (2,))])
-    rows["x"], rows["y"], rows["z"] = surfels.positions.T
-    rows["rgb"] = np.arange(150).astype(np.uint32).view(np.float32)
-    return HeadedFiles(folder, ".pcd", [pcd_file(rows, name) for name in ("ascii", "binary", "binary_compressed")])
-
-
-def spz(folder: Path) -> SpzFiles:
-    surfels = ball(150)
-    turns = surfels.rotations[:, [1, 2, 3, 0]].astype(np.float64)
-    return SpzFiles(folder, ".spz", [spz_file(surfels.positions, turns, n, n - 1) for n in (1, 2, 3)])
 
 
 class NpzFiles:
@@ -467,22 +316,7 @@ class SampledBlocks(NpzFiles):
         self._paths[0].write_bytes(file)
         read_request(self._paths[0])
         sampling = joined_blocks(self._mesh, (read_block(path) for path in self._paths), resolution=8)
-        yield from _arrays(sampling.surfels)
-
-
-def _surfels_of(path: Path) -> Iterator[np.ndarray]:
-    """The arrays of the surfels that a file gives, as the import makes them of it."""
-    found = read_contents(path)
-    if isinstance(found, Points):
-        places = found.positions - offset_for(found.positions)
-        surfels, _ = surfels_from_points(places, found.normals, found.radii, found.colors)
-    else:
-        surfels = found.surfels
-    yield from _arrays(surfels)
-
-
-def _arrays(surfels: Surfels) -> Iterator[np.ndarray]:
-    return (array for array in surfels.arrays().values() if array.dtype.kind == "f")
+        yield from arrays_of(sampling.surfels)
 
 
 #: name -> makes a format in a folder
@@ -493,11 +327,11 @@ FORMATS = {
     "points": point_ply,
     "tiles": Tiles,
     "sampled": SampledBlocks,
-    "las": las,
-    "laz": laz,
-    "e57": e57,
-    "ptx": ptx,
-    "text": text,
-    "pcd": pcd,
-    "spz": spz,
+    "las": scan_formats.las,
+    "laz": scan_formats.laz,
+    "e57": scan_formats.e57,
+    "ptx": scan_formats.ptx,
+    "text": scan_formats.text,
+    "pcd": scan_formats.pcd,
+    "spz": scan_formats.spz,
 }
