@@ -434,7 +434,8 @@ def are_apart(array, here, standalone, settings, has_layers):
     # filters average normals over neighbours too; layers multiply rounding errors, and filters add them up
     filters = get_method(settings.method).filters_silhouettes
     others = {"normal": max(tolerance, NORMAL_TOLERANCE), "depth": TOLERANCE, "cryptomatte": TOLERANCE}
-    others |= {"coverage": TOLERANCE if has_layers else ROUNDING if filters else 0}
+    is_sum = has_layers or settings.as_printed  # coverage below the printed edge threshold is the sum of weights
+    others |= {"coverage": TOLERANCE if is_sum else ROUNDING if filters else 0}
     brightness = np.maximum(standalone[array], 1) if is_rough and array == "color" else 1
     apart = np.abs(here[array] - standalone[array]) / brightness > others.get(array, tolerance)
     if array in ("depth", "position"):
