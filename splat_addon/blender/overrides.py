@@ -11,14 +11,15 @@ from .ids import OBJECT_SETTINGS, SURFEL_RECORD
 
 @unattended("Keeping library overrides")
 def _before_save(*_) -> None:
-    """Read the settings of the objects in libraries, which makes them if the library has none.
+    """Read the settings of overrides and of their objects in libraries, which makes them where there are none.
 
-    Blender compares them with the override's when it saves, and otherwise writes an override that it cannot read.
+    Blender compares them when it saves. If only one of the two has any, it writes an override that it cannot read.
     """
     for owner in bpy.data.objects:
         if owner.override_library and owner.override_library.reference:
-            for name in (OBJECT_SETTINGS, SURFEL_RECORD):
-                getattr(owner.override_library.reference, name)
+            for each in (owner, owner.override_library.reference):
+                for name in (OBJECT_SETTINGS, SURFEL_RECORD):
+                    getattr(each, name)
 
 
 register, unregister = with_handlers((bpy.app.handlers.save_pre, _before_save))

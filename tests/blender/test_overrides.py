@@ -70,6 +70,17 @@ def test_an_overridden_source_that_was_hidden_comes_back(overridden, saved_and_o
     assert body.hide_render == was_disabled and not body.hide_get()
 
 
+def test_an_override_that_changes_nothing_is_opened_without_a_complaint(overridden, saved_and_opened, capfd):
+    """Nothing has touched its settings before it is saved, neither in the library nor in the override."""
+    bpy.ops.ed.undo_push(message="Make Library Override")
+    for _ in range(2):
+        saved_and_opened()
+        [body] = bpy.context.scene.objects
+        assert [p.rna_path for p in body.override_library.properties if "surfel" in p.rna_path] == []
+    said = capfd.readouterr()
+    assert "expected ID type" not in said.out + said.err
+
+
 def test_an_update_of_linked_surfels_says_that_they_would_not_be_saved(override, add_square, convert):
     source = add_square("body")
     made = override(source, *convert(resolution=8))
