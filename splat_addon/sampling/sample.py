@@ -31,12 +31,12 @@ from .edges.clipping import clip_fields, clippings
 from .edges.contacts import crossed_cells, find_contacts
 from .edges.gaps import BorderPlaces, gap_surfels
 from .edges.meetings import by_facing
-from .ldc.depth_cube import axes_of, depth_cube, in_bands, row_bands, rows_of
+from .ldc.depth_cube import TRIANGLES, axes_of, depth_cube, in_bands, row_bands, rows_of, triangles_of
 from .ldc.grid import make_grid
 from .ldc.reductions import find_reduction
 from .ldc.scan_conversion import BATCH, Spans, batches
 from .mesh.barycentric import barycentric
-from .mesh.cleaning import drop_unusable
+from .mesh.cleaning import usable_triangles
 from .mesh.solid import is_solid
 from .mesh.triangle_mesh import TriangleMesh
 from .options import SamplingOptions
@@ -62,8 +62,9 @@ class Sampling:
     small_parts: number of parts that lay between all rays; each has one surfel, and these come last.
     keeps_both_sides: whether surfels of a solid mesh are solid. They are not if two sides were merged, or if a part has
         a single disc.
-    gap_triangles: (k,) triangles of the surfels that were added to cover gaps left by others that end at clip lines;
-        these come before those of small parts.
+    gaps: number of surfels that were added to cover gaps left by others that end at clip lines; these come before those
+        of small parts.
+    triangles: (N,) int32, the triangle of the mesh on which each surfel lies, and of a merged one one of those.
     saved: how many fewer surfels there are than without a tolerance.
     error: the largest distance of a merged surfel's plane from the surfels it replaces, object units.
     """
@@ -73,7 +74,8 @@ class Sampling:
     keeps_both_sides: bool = True
     saved: int = 0
     error: float = 0.0
-    gap_triangles: np.ndarray = field(default_factory=lambda: np.empty(0, np.intp))
+    gaps: int = 0
+    triangles: np.ndarray = field(default_factory=lambda: np.empty(0, np.int32))
 
 
 def sample_mesh(mesh: TriangleMesh, **options) -> Surfels:
@@ -115,7 +117,7 @@ class SamplingRun:
     """
 
     def __init__(self, mesh: TriangleMesh, options: SamplingOptions):
-        self.mesh, _ = drop_unusable(mesh)
+        self.mesh, self._kept = usable_triangles(mesh)
         self.options, self._chosen = options, find_reduction(options.reduction)
         if self.is_empty:
             return
@@ -208,10 +210,14 @@ class SamplingRun:
         """The result after the steps that need neighbouring samples. arrays: of the images' samples. missed: result of
         `missed_components`."""
         total = len(arrays["positions"])
+        arrays = arrays | {TRIANGLES: triangles_of(images)}
         clipping, fitting, merging = self._stages(report)
         if self._chosen.merge is not None:
             arrays = self._chosen.merge(arrays, axes_of(images), self.grid.spacing)
-        of_large = {edge: self.filled(large[edge], lambda share: None, edge) for edge in sorted(large)}
+        of_large = {
+            edge: self.filled(large[edge], lambda share: None, edge) | {TRIANGLES: triangles_of(large[edge])}
+            for edge in sorted(large)
+        }
         cards = {}
         if self._may_have_cards:
             about = self.mesh, self.grid.spacing, self.options.deforms
@@ -237,7 +243,7 @@ class SamplingRun:
             more.append(of_edge)
             saved += (edge**2 - 1) * len(of_edge["positions"])
         if gaps:
-            more.append(gaps)
+            more.append(gaps | {TRIANGLES: gap_triangles})
         if small_parts:
             about = self.options.splat_size, self._sampler, self._tangents, bool(self._uv_fields)
             more.append(component_surfels(self.mesh, self._coordinates, self.grid, missed, *about))
@@ -246,10 +252,11 @@ class SamplingRun:
         if "lift" in arrays:
             arrays["lift"] /= np.maximum(*arrays["scales"].T)
         arrays = {name: array for name, array in arrays.items() if name not in NORMAL_FIELDS or array.any()}
+        triangles = self._kept.take(arrays.pop(TRIANGLES)).astype(np.int32)
         surfels = Surfels(origin=self.grid.surfel_origin, **arrays)
         keeps_both_sides = self._chosen.merge is None and not small_parts
         report(1.0)
-        return Sampling(surfels, small_parts, keeps_both_sides, saved, error, gap_triangles)
+        return Sampling(surfels, small_parts, keeps_both_sides, saved, error, len(gap_triangles), triangles)
 
     @property
     def _may_have_cards(self) -> bool:

@@ -144,9 +144,9 @@ def test_a_face_narrower_than_a_cell_is_covered_by_surfels_of_its_own():
     sampling = sample_surface(mesh, resolution=10, crease_angle=np.radians(20))
     points, normals = on_surface(mesh, 40_000)
     narrow = np.flatnonzero((normals[:, 0] > 0.5) & (normals[:, 1] > 0.5))
-    assert len(narrow) > 50 and len(sampling.gap_triangles) > 5
+    assert len(narrow) > 50 and sampling.gaps > 5
     assert bare_share(sampling.surfels, points[narrow], normals[narrow]) == 0
-    assert len(sampling.gap_triangles) < len(sampling.surfels) / 4
+    assert sampling.gaps < len(sampling.surfels) / 4
 
 
 @pytest.mark.parametrize("thickness", [0.2, 0.4])
@@ -304,7 +304,7 @@ def test_surfels_that_fill_gaps_follow_a_mesh_too():
     strip = TriangleMesh(np.array([(0, 0, 0), (1, 0, 0), (1, 0.004, 0), (0, 0.004, 0.0)]) + 0.0013,
                          np.array([(0, 1, 2), (0, 2, 3)]))  # fmt: skip
     deforming = deforming_surfels(strip, spacing=0.05, crease_angle=ANGLE)
-    assert len(deforming.sampling.gap_triangles)
+    assert deforming.sampling.gaps
     surfels, _ = deforming.at(TriangleMesh(strip.positions + np.array([0, 0, 2]), strip.triangles))
     assert np.allclose(surfels.positions[:, 2] + surfels.origin[2], 2.0013)
 

@@ -255,7 +255,7 @@ def test_rows_in_which_a_face_lies_over_itself_keep_their_samples():
     triangles = np.concatenate([np.stack([k, 51 + k, 52 + k], 1), np.stack([k, 52 + k, k + 1], 1)])
     mesh = TriangleMesh(np.concatenate([0.5 * around, around]), triangles)
     sampling = made(mesh, 200)
-    replaced = len(sampling.surfels) - len(sampling.gap_triangles) + sampling.saved
+    replaced = len(sampling.surfels) - sampling.gaps + sampling.saved
     assert replaced == len(sample_surface(mesh, resolution=200).surfels)
     assert len(uncovered_points(mesh, sampling.surfels, 2 / 200)) == 0
     large = are_large(sampling.surfels, 2 / 200)

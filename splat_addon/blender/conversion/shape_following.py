@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import bpy
 import numpy as np
-from mathutils.bvhtree import BVHTree
 
 from ...sampling import TriangleMesh
 from ...surfels import Surfels
@@ -37,10 +36,6 @@ _MAKE, _VERSION = "surfels_shape", 2
 
 #: A half-axis shrinks at most to this share of its original length, never to nothing.
 _LEAST_SHRINKING = 1e-3
-
-#: Triangles this much farther than the nearest count as equally near, in radii of the surfel. They are compared if the
-#: cosine between the surfel and the nearest is below the second number.
-_SAME_PLACE, _ALIKE = 0.01, 0.9
 
 #: Largest difference of a shading normal from the mean of those at the corners.
 _SAME_NORMAL = 0.02
@@ -71,7 +66,7 @@ def follow_shape(made: bpy.types.Object, conversion, depsgraph: bpy.types.Depsgr
     frame, own = (np.array(m, np.float64) for m in (conversion.matrix_world, source.matrix_world))
     if surfels.origin.any() or np.abs(frame - own).max() > _ROUNDING * np.abs(own).max():
         return "its surfels are even in the world, or it is sheared or far from its origin"
-    _bind(made.data, surfels, mesh, source.evaluated_get(depsgraph).data)
+    _bind(made.data, surfels, conversion.sampling.triangles, mesh, source.evaluated_get(depsgraph).data)
     modifier = made.modifiers.new(SHAPE_GROUP, "NODES")
     modifier.node_group, modifier.show_expanded = known_group(_MAKE, _VERSION) or _new_group(), False
     made.modifiers.move(len(made.modifiers) - 1 - _pinned(made), 0)
@@ -165,10 +160,11 @@ def _is_own_mesh(source: bpy.types.Object, mesh, depsgraph: bpy.types.Depsgraph)
     return np.allclose(positions, mesh.positions, rtol=0, atol=_ROUNDING * float(np.ptp(positions, axis=0).max()))
 
 
-def _bind(made: bpy.types.Mesh, surfels: Surfels, mesh: TriangleMesh, source: bpy.types.Mesh) -> None:
-    """Store the surfels relative to their triangles, as attributes. mesh: of the evaluated source."""
+def _bind(
+    made: bpy.types.Mesh, surfels: Surfels, triangles: np.ndarray, mesh: TriangleMesh, source: bpy.types.Mesh
+) -> None:
+    """Store the surfels relative to their (N,) triangles, as attributes. mesh: of the evaluated source."""
     vertices = np.asarray(mesh.positions, np.float64)
-    triangles = _triangles_of(surfels, vertices, mesh.triangles)
     corners = mesh.triangles[triangles]
     start = vertices[corners[:, 0]]
     edge_1, edge_2 = (vertices[corners[:, k]] - start for k in (1, 2))
@@ -213,21 +209,6 @@ def _corners_of(mesh: TriangleMesh, triangles: np.ndarray, source: bpy.types.Mes
     ordered, wanted = keys(own)[order], keys(mesh.triangles[triangles].astype(np.int64))
     at = np.minimum(np.searchsorted(ordered, wanted), count - 1)
     return np.where((ordered[at] == wanted)[:, None], loops[order[at]], -1)
-
-
-def _triangles_of(surfels: Surfels, vertices: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """(n,) the triangle nearest to each surfel. Of several in one place, such as a floor and the underside of a box on
-    it, the one that faces as the surfel does.
-    """
-    tree = BVHTree.FromPolygons(vertices.tolist(), triangles.tolist(), all_triangles=True)
-    positions, facing, result = surfels.positions.tolist(), surfels.geometric_normals(), []
-    for position, normal, near in zip(positions, facing.tolist(), (_SAME_PLACE * surfels.radius).tolist(), strict=True):
-        _, own, triangle, distance = tree.find_nearest(position)
-        if own.dot(normal) < _ALIKE:
-            found = tree.find_nearest_range(position, distance + near)
-            triangle = max(found, key=lambda one: one[1].dot(normal))[2]
-        result.append(triangle)
-    return np.array(result, np.int64)
 
 
 def _new_group() -> bpy.types.NodeTree:

@@ -13,10 +13,8 @@ from ...clip_lines import CLIP_FIELDS, turned
 from ...normal_fields import NORMAL_FIELDS, fields_of
 from ...quaternions import axes_columns, axes_quaternions
 from ...surfels import Surfels, field_values
-from ..mesh.cleaning import usable_triangles
 from ..mesh.triangle_mesh import TriangleMesh, doubled_areas, gather_corners, triangle_chunks
-from ..options import PLAIN
-from ..sample import Sampling, sample_surface
+from ..sample import Sampling
 
 #: Surfels whose longer axis has grown beyond this factor show less detail than requested.
 LARGEST_STRETCH = 2.5
@@ -39,17 +37,10 @@ class Binding:
     run, in float64.
     """
 
-    def __init__(self, mesh: TriangleMesh, sampling: Sampling, options: dict):
+    def __init__(self, mesh: TriangleMesh, sampling: Sampling):
         surfels = sampling.surfels
         self._middle = mesh.positions.mean(axis=0)
-        # Sample once more with triangle numbers as materials: the order of samples depends on the shape alone.
-        kept = usable_triangles(mesh)
-        named = TriangleMesh(mesh.positions, mesh.triangles[kept], materials=kept.astype(np.int32))
-        later = "crease_angle", "fits_blending", "fits_planes", "lifts"
-        alike = {name: value for name, value in options.items() if name not in later}
-        triangles = sample_surface(named, **(PLAIN | alike)).surfels.materials
-        before = len(triangles) - sampling.small_parts
-        triangles = np.concatenate([triangles[:before], sampling.gap_triangles, triangles[before:]])
+        triangles = sampling.triangles
         is_new = np.ones(len(triangles) + 1, bool)
         is_new[1:-1] = triangles[1:] != triangles[:-1]
         for shared in (surfels.rotations, surfels.scales):

@@ -60,7 +60,7 @@ class DeformingSurfels:
             self._last = mesh, (self._surfels, 0.0)
             return self._last[1]
         if self._binding is None:
-            self._binding = Binding(self.mesh, self.sampling, self._options)
+            self._binding = Binding(self.mesh, self.sampling)
         arrays, origin, stretched = self._binding.arrays_on(mesh)
         surfels = Surfels(origin=origin, **(self.sampling.surfels.arrays() | arrays))
         self._last = mesh, (self._as_solid_as(mesh, surfels), stretched)

@@ -19,6 +19,9 @@ from .scan_conversion import Spans, scan_convert
 #: Surfel rows are indexed with 32 bits elsewhere, which is far beyond practical counts.
 MAX_SAMPLES = 2**31 - 1
 
+#: What the triangles of samples are called beside the fields of `Surfels`.
+TRIANGLES = "triangles"
+
 #: Triangles per batch: larger than elsewhere, because few triangles reach the expensive steps.
 _CHUNK = 24576
 
@@ -154,6 +157,11 @@ def _images_with_samples(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndar
 def axes_of(images: tuple[Spans, ...]) -> np.ndarray:
     """(N,) the axis along which each sample of the images was taken."""
     return np.repeat(np.arange(3), _samples(images))
+
+
+def triangles_of(images: tuple[Spans, ...]) -> np.ndarray:
+    """(N,) the triangle of each sample of the images."""
+    return np.concatenate([np.repeat(spans.triangles, spans.counts) for spans in images])
 
 
 def rows_of(images: tuple[Spans, ...]) -> list[tuple[int, slice]]:

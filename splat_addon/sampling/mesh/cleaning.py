@@ -25,9 +25,9 @@ def drop_unusable(mesh: TriangleMesh) -> tuple[TriangleMesh, dict[str, int]]:
     return mesh, dropped
 
 
-def usable_triangles(mesh: TriangleMesh) -> np.ndarray:
-    """(t,) ascending indices of the triangles that `drop_unusable` keeps."""
-    return _usable(mesh)[1]
+def usable_triangles(mesh: TriangleMesh) -> tuple[TriangleMesh, np.ndarray]:
+    """What `drop_unusable` keeps, and the (t,) ascending indices of its triangles in `mesh`."""
+    return _usable(mesh)[:2]
 
 
 def _usable(mesh: TriangleMesh) -> tuple[TriangleMesh, np.ndarray, dict[str, int]]:

@@ -23,6 +23,7 @@ from ..attributes.blend_depths import LEAST_BLENDING
 from ..attributes.ellipses import ellipse_rotations, ellipse_scales
 from ..attributes.normal_changes import from_normals_per_cell, normals_per_cell
 from ..attributes.texture_mapping import BORDER, UV_FIELDS, from_uv_planes, is_mapped, slips, uv_planes
+from ..ldc.depth_cube import TRIANGLES
 from ..ldc.grid import BLOCK
 
 #: Maximum doublings of the spacing. The renderer separates surfaces that are half a splat's radius apart, so larger
@@ -80,10 +81,10 @@ class _Nodes:
 
     keys: (n,) int64: image, side and block. planes: (n, 3): depth over the block's middle and its change per column and
         row, in cells. shading: (n, 3) unit. colors: (n, 4 or more): averaged values, colour first, then optional fields
-        of `Surfels`. materials: (n,). errors, bends, tints: (n,) bounds on how much samples differ from the block:
-        depth in cells, radians, colour. uvs: (n, 2, 3) texture coordinates over the block's middle and their change per
-        column and row, (n, 0, 3) without any; slips: (n,) bound on their error, in cells. children: (n, 4) rows of the
-        level below.
+        of `Surfels`. materials, triangles: (n,), of the first sample. errors, bends, tints: (n,) bounds on how much
+        samples differ from the block: depth in cells, radians, colour. uvs: (n, 2, 3) texture coordinates over the
+        block's middle and their change per column and row, (n, 0, 3) without any; slips: (n,) bound on their error, in
+        cells. children: (n, 4) rows of the level below.
     """
 
     keys: np.ndarray
@@ -91,6 +92,7 @@ class _Nodes:
     shading: np.ndarray
     colors: np.ndarray
     materials: np.ndarray
+    triangles: np.ndarray
     errors: np.ndarray
     bends: np.ndarray
     tints: np.ndarray
@@ -160,16 +162,15 @@ def _samples(arrays, axes, spacing) -> tuple[_Nodes, np.ndarray]:
             tints[arrays[name][:, 1] > 0] = np.inf
     colors = np.column_stack([arrays["colors"], *_averaged(arrays, axes, spacing).values()])
     uvs = uv_planes(arrays, axes, spacing)
-    nodes = _Nodes(
-        keys, planes, arrays["normals"], colors, arrays["materials"], zeros, zeros, tints, uvs, zeros, zeros[:, None]
-    )
+    alike = keys, planes, arrays["normals"], colors, arrays["materials"], arrays[TRIANGLES]
+    nodes = _Nodes(*alike, zeros, zeros, tints, uvs, zeros, zeros[:, None])
     return nodes.take(order), order
 
 
 def _averaged(arrays: dict[str, np.ndarray], axes: np.ndarray, spacing: float) -> dict[str, np.ndarray]:
     """What merged discs average: optional fields, and changes of normals per cell. Lifts and changes are alike, because
     normals are compared."""
-    others = (*LAYOUT, *UV_FIELDS, BORDER, *CLIP_FIELDS, *NORMAL_FIELDS, "blend_depth")
+    others = (*LAYOUT, *UV_FIELDS, BORDER, *CLIP_FIELDS, *NORMAL_FIELDS, "blend_depth", TRIANGLES)
     averaged = {name: array for name, array in arrays.items() if name not in others}
     averaged[_CHANGES] = normals_per_cell(arrays, axes, spacing)
     return averaged | {name: averaged[name] * _NOT_COMPARED for name in _SCALED & averaged.keys()}
@@ -227,6 +228,7 @@ def _parents(nodes: _Nodes, edge: int, spacing: float, tolerance: Tolerance) -> 
         shading,
         colors,
         nodes.materials[four[:, 0]],
+        nodes.triangles[four[:, 0]],
         (_plane_distances(planes, nodes.planes[four], edge) + nodes.errors[four]).max(axis=1),
         (np.arccos(np.clip(cosines, -1, 1)) + nodes.bends[four]).max(axis=1),
         (tints.max(axis=2) + nodes.tints[four]).max(axis=1),
@@ -356,6 +358,7 @@ def _discs(nodes: _Nodes, level: int, spacing: float) -> dict[str, np.ndarray]:
         "normals": nodes.shading.astype(np.float32),
         "colors": nodes.colors[:, :4].astype(np.float32),
         "materials": nodes.materials.astype(np.int32),
+        TRIANGLES: nodes.triangles,
     }
     for axis in range(3):
         at = np.flatnonzero(side >> 1 == axis)

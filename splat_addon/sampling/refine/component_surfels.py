@@ -12,6 +12,7 @@ from ...surfels import OPTIONAL_LAYOUT
 from ..attributes.ellipses import ellipse_rotations
 from ..attributes.material_sampler import MaterialSampler, Samples
 from ..attributes.texture_mapping import BORDER, UV_FIELDS, fill_uvs
+from ..ldc.depth_cube import TRIANGLES
 from ..ldc.grid import Grid
 from ..mesh.triangle_mesh import TriangleMesh, doubled_areas, gather_corners
 
@@ -32,7 +33,7 @@ def component_surfels(
     tangents: np.ndarray | None,
     texture_mapped: bool,
 ) -> dict[str, np.ndarray]:
-    """The arrays of `Surfels` of p parts, positions relative to the grid's middle.
+    """The arrays of `Surfels` of p parts, positions relative to the grid's middle, and their largest triangles.
 
     coordinates: (3, V) float64 grid coordinates of the mesh's vertices. missed: result of `missed_components`.
     largest_radius: of a disc, in spacings. sampler, tangents: as in `SampleFiller`.
@@ -72,7 +73,7 @@ def component_surfels(
     if texture_mapped:
         arrays |= {name: np.zeros((count, 2), np.float32) for name in (*UV_FIELDS, BORDER)}
         fill_uvs(arrays, mesh.surfaces, samples, axis_steps_of(corners[:, :, largest] * grid.spacing, arrays))
-    return arrays
+    return arrays | {TRIANGLES: triangles[largest]}
 
 
 def axis_steps_of(corners: np.ndarray, arrays: dict[str, np.ndarray]) -> np.ndarray:
