@@ -41,7 +41,7 @@ def _programs(made: FramePlan, p: Pass) -> Iterator[tuple[str, ...]]:
     """The vertex shader and the variants of a pass's programs: none, all and each, with each vertex shader."""
     variants = {part.only for part in p.parts} - {"", *made.variants}
     others = sorted(variants - VERTEX.keys())
-    own = p.host.replace(".frag", ".vert")
+    own = p.host.vertex
     usual = own if (FOLDER / "hosts" / f"{own}.glsl").exists() else "fullscreen.vert"
     for first in sorted(variants & VERTEX.keys()) or [""]:
         for more in ((), others, *([variant] for variant in others)):

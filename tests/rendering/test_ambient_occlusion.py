@@ -23,6 +23,7 @@ from splat_addon.rendering import (
     plan,
 )
 from splat_addon.rendering import PolygonInstance as Polygons
+from splat_addon.rendering.plan.hosts import Host, Kind
 from splat_addon.rendering.plan.programs import describe
 from splat_addon.surfels import Surfels
 
@@ -174,7 +175,7 @@ def test_where_it_is_not_nothing_is_there_and_the_plan_says_why(method, seen, se
     assert [str(p.parts) for p in made.passes] == [str(p.parts) for p in usual.passes]
     for p in made.passes:
         if p.host:
-            described = describe(made, p, p.host.replace(".frag", ".vert") if "space" in p.host else "fullscreen.vert")
+            described = describe(made, p, p.host.vertex if "space" in p.host else "fullscreen.vert")
             assert "occlu" not in described.fragment and "open_share" not in described.fragment
             assert not any("occlu" in name for name in described.samplers)
 
@@ -184,7 +185,7 @@ def test_where_it_is_the_plan_says_so():
     made = plan(mixed, camera(), replace(SETTINGS, method="quad"))
     assert [p.name for p in made.passes].count("occluders") == 1
     assert "transparent layers neither have it nor cause it" in str(made)
-    lit = [p for p in made.passes if p.kind == "layer" and p.host == "deferred_lighting.frag"]
+    lit = [p for p in made.passes if p.kind == Kind.LAYER and p.host == Host.DEFERRED_LIGHTING]
     assert lit and all("open_share" not in describe(made, p).fragment for p in lit)
     pictured = replace(DISCS, environment=Environment(np.ones((4, 8, 3))))
     assert "occluders" in plan(pictured, camera(), SETTINGS).textures

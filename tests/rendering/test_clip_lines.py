@@ -16,6 +16,7 @@ from splat_addon.rendering import Camera, Instance, Light, Material, Scene, Sett
 from splat_addon.rendering.detail import hierarchies
 from splat_addon.rendering.detail.hierarchies import hierarchy_of
 from splat_addon.rendering.methods import METHODS
+from splat_addon.rendering.plan.hosts import Host
 from splat_addon.rendering.plan.programs import describe
 from splat_addon.rendering.upload.packing import pack_clip_lines
 from splat_addon.rendering.upload.storages import STORAGES
@@ -280,10 +281,9 @@ def test_a_model_without_lines_has_no_line_of_them_in_its_shaders():
     plain, camera = clipped_iron(SIZE, 16, crease_angle=None, fits_blending=False)
     made = plan(plain, camera, FLAT)
     for p in made.passes:
-        vertex = {"screen_space.frag": "screen_space.vert", "visibility.frag": "visibility.vert"}.get(p.host)
-        if vertex:
-            variant = ("splats",) if p.host == "visibility.frag" else ()
-            text = describe(made, p, vertex, *variant)
+        if p.host in (Host.SCREEN_SPACE, Host.VISIBILITY):
+            variant = ("splats",) if p.host == Host.VISIBILITY else ()
+            text = describe(made, p, p.host.vertex, *variant)
             assert "clip_first" not in text.vertex + text.fragment and "blend" not in text.vertex.split("void main")[1]
 
 

@@ -281,5 +281,5 @@ def test_every_planned_sum_is_written_in_whatever_space_a_method_works(name, sce
     made = plan(scene, CAMERA, Settings(method=method, **settings))
     (attributes,) = [p for p in made.passes if p.name == "attributes"]
     assert name in attributes.writes
-    vertex = attributes.host.replace(".frag", ".vert")
+    vertex = attributes.host.vertex
     assert f"  {name} = " in describe(made, attributes, vertex).fragment

@@ -37,7 +37,7 @@ def instructions(scene, camera, settings: Settings) -> Iterator[str]:
         if name not in passes:
             yield "-"
             continue
-        vertex = VERTEX.get(name, passes[name].host.replace(".frag", ".vert"))
+        vertex = VERTEX.get(name, passes[name].host.vertex)
         variants = ("splats",) if name == "visibility" else ()
         description = describe(planned, passes[name], vertex, *variants)
         texts = _declared(description, description.vertex, "out"), _declared(description, description.fragment, "in")

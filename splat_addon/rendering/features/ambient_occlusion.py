@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 from ..plan.graph import Part, Pass, Texture, fill_all
+from ..plan.hosts import LIT_HOSTS, Host, Kind
 from ..plan.planning import any_of
 from ..plan.tiles import tile_edge
 from . import gbuffer, polygons
-from .drawing import LIT_HOSTS
 
 #: Search distance for occluders in a picture that is drawn in tiles, as a fraction of a tile's edge.
 TILE_SHARE = 1 / 8
@@ -73,8 +73,8 @@ def _depths(planning) -> Pass:
         constants=(("MEAN_OF", settings.multisampling),),
         choices=(("samples", "mean" if settings.multisampling else "each"),),
     )
-    sums = gbuffer.depth_parts(planning, "opaque", reads=(gbuffer.COLOR, gbuffer.NORMAL))
-    return Pass("occluders", why, "occluders.frag", fill_all, (own, sums, *polygons.joined(planning)))
+    sums = gbuffer.depth_parts(planning, Kind.OPAQUE, reads=(gbuffer.COLOR, gbuffer.NORMAL))
+    return Pass("occluders", why, Host.OCCLUDERS, fill_all, (own, sums, *polygons.joined(planning)))
 
 
 def is_present(planning) -> bool:
@@ -82,5 +82,5 @@ def is_present(planning) -> bool:
 
 
 def parts(planning, p):
-    if p.kind == "opaque" and p.host in LIT_HOSTS:
+    if p.kind == Kind.OPAQUE and p.host in LIT_HOSTS:
         yield Part("ambient_occlusion", reads=(DEPTHS,))

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ..plan.graph import Part
-from .drawing import SPLAT_HOSTS
+from ..plan.hosts import DRAWING_HOSTS, Host, Kind
 
 
 def passes(planning):
@@ -21,6 +21,5 @@ def is_present(planning) -> bool:
 
 
 def parts(planning, p):
-    hosts = (*SPLAT_HOSTS, "visibility.frag")
-    if p.host in hosts and p.kind in ("opaque", "layer", "rest"):
-        yield Part("back_culling", only="splats" if p.host == "visibility.frag" else "")
+    if p.host in DRAWING_HOSTS and p.kind in (Kind.OPAQUE, Kind.LAYER, Kind.REST):
+        yield Part("back_culling", only="splats" if p.host == Host.VISIBILITY else "")

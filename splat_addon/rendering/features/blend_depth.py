@@ -6,10 +6,8 @@ from __future__ import annotations
 
 from ...large_surfels import LARGE_WEIGHT, STEPS_OF_SAMPLES
 from ..plan.graph import Part
+from ..plan.hosts import DRAWING_HOSTS, Host, Kind
 from ..plan.planning import count, counted
-from .drawing import SPLAT_HOSTS
-
-_HOSTS = (*SPLAT_HOSTS, "visibility.frag")
 
 CONSTANTS = {"STEPS_OF_SAMPLES": STEPS_OF_SAMPLES, "LARGE_WEIGHT": LARGE_WEIGHT}
 
@@ -29,9 +27,11 @@ passes, is_present = counted(
 
 def parts(planning, p):
     # A rim belongs to its object, however deep its splats blend.
-    if p.host in _HOSTS and p.kind != "edge_ids":
+    if p.host in DRAWING_HOSTS and p.kind != Kind.EDGE_IDS:
         # A shadow map is compared with points that the camera sees; if casters moved by less, surfaces would shadow
         # themselves.
         # As printed, all splats blend alike, and large ones weigh as much as others.
-        words = ("limits",) if p.kind == "shadow" else () if planning.settings.as_printed else ("limits", "moves_less")
-        yield Part("blend_depth", words, only="splats" if p.host == "visibility.frag" else "")
+        words = (
+            ("limits",) if p.kind == Kind.SHADOW else () if planning.settings.as_printed else ("limits", "moves_less")
+        )
+        yield Part("blend_depth", words, only="splats" if p.host == Host.VISIBILITY else "")

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from ...large_surfels import SAMPLE_SIZE
 from ..plan.graph import Part
+from ..plan.hosts import BLENDED, DRAWING_HOSTS, Host
 from ..plan.planning import count, counted
-from .drawing import SPLAT_HOSTS, pooled
+from .drawing import pooled
 
 CONSTANTS = {"SAMPLE_SIZE": SAMPLE_SIZE}
 
@@ -46,7 +47,7 @@ passes, is_present = counted(
 
 
 def parts(planning, p):
-    if p.host in (*SPLAT_HOSTS, "visibility.frag"):
+    if p.host in DRAWING_HOSTS:
         words = _words(planning, p)
         varyings = (*_VARYINGS, *(v for word in words for v in _MORE_VARYINGS.get(word, ())))
         yield Part("clip_lines", words, inputs=("clip_lines",), varyings=varyings, only="clipped")
@@ -54,11 +55,11 @@ def parts(planning, p):
 
 def _words(planning, p) -> tuple[str, ...]:
     """How lines act: on positions in the ellipse or in the picture, and blurred if the method blurs rims."""
-    if p.host == "point_sprite.frag":
+    if p.host == Host.POINT_SPRITE:
         return ("of_sprites",)
-    if p.host == "visibility.frag":
-        is_of_sprites = planning.method.hides_within == "sprite" and p.kind in ("opaque", "layer")
+    if p.host == Host.VISIBILITY:
+        is_of_sprites = planning.method.hides_within == "sprite" and p.kind in BLENDED
         return ("of_sprites",) if is_of_sprites else ("of_ellipses",)
-    if p.host == "screen_space.frag":
+    if p.host == Host.SCREEN_SPACE:
         return ("blurs_lines",) if planning.method.blurs_rims else ("cuts_at_lines",)
     return ()

@@ -8,6 +8,7 @@ layers.
 from __future__ import annotations
 
 from ..plan.graph import Part
+from ..plan.hosts import Host, Kind
 from ..plan.planning import count, counted
 from . import silhouettes
 from .textures import ATLAS, OF_TRIANGLES
@@ -29,10 +30,10 @@ passes, is_present = counted(
 
 
 def parts(planning, p):
-    if p.host == "visibility.frag" and p.kind != "layer":
-        words = () if p.kind == "shadow" else ("in_view",)
+    if p.host == Host.VISIBILITY and p.kind != Kind.LAYER:
+        words = () if p.kind == Kind.SHADOW else ("in_view",)
         rows = (("ROWS", silhouettes.rows_of(p.depth)),)
         inputs = "polygon_uvs", *ATLAS
         yield Part("cut_outs", words, inputs=inputs, varyings=_VARYINGS, constants=rows, only="cut_out")
-    if p.host == "polygons.frag":
+    if p.host == Host.POLYGONS:
         yield Part("cut_outs", only="cut_out")

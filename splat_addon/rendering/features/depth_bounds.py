@@ -6,12 +6,13 @@ they compare depths themselves, and only visible polygons are drawn.
 from __future__ import annotations
 
 from ..plan.graph import Part, Pass, Texture, fill
+from ..plan.hosts import BLENDED, Host, Kind
 from . import silhouettes, visibility
 
 BOUNDS = Texture("depth_bounds")
 
 
-def bounds(planning, reason: str, seen: Texture, kind: str = "opaque") -> Pass:
+def bounds(planning, reason: str, seen: Texture, kind: Kind = Kind.OPAQUE) -> Pass:
     """The pass that stores the visible depths; and the depths of samples, if visibility has more rows than there are
     samples."""
     rows = silhouettes.rows_of(seen)
@@ -24,7 +25,7 @@ def bounds(planning, reason: str, seen: Texture, kind: str = "opaque") -> Pass:
         words=("writes_depth",) if rows > 1 else (),
     )
     state = dict.fromkeys(("depth_test", "depth_write", "fragment_depth"), rows > 1)
-    return Pass("depth_bounds", reason, "depth_bounds.frag", fill, (own,), kind, state)
+    return Pass("depth_bounds", reason, Host.DEPTH_BOUNDS, fill, (own,), kind, state)
 
 
 def passes(planning):
@@ -47,7 +48,7 @@ def is_present(planning) -> bool:
 
 
 def parts(planning, p):
-    if p.host == "screen_space.frag" and p.kind in ("opaque", "layer"):
+    if p.host == Host.SCREEN_SPACE and p.kind in BLENDED:
         yield Part("depth_bounds", reads=(BOUNDS,))
-    if p.host in ("polygons.frag", "lines.frag"):
+    if p.host in (Host.POLYGONS, Host.LINES):
         yield Part("depth_bounds", reads=(BOUNDS,))

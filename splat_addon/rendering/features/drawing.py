@@ -12,7 +12,6 @@ import numpy as np
 from ..culling.polygon_runs import triangle_runs
 from ..device.interface import Pipeline
 from ..device.interface import Texture as DeviceTexture
-from ..methods.method import RASTERIZERS
 from ..plan.graph import Pass, Pause
 from ..plan.together import batches_of, pool_of, pooled_batches_of
 from ..plan.uniforms import DRAW, std140
@@ -25,13 +24,6 @@ if TYPE_CHECKING:
 
 #: Triangles of a draw call, after which drawing may pause.
 AT_ONCE = 1 << 15
-
-#: Fragment shaders that add splats to sums.
-SPLAT_HOSTS = tuple(f"{name}.frag" for name in RASTERIZERS)
-#: Fragment shaders that light samples.
-LIT_HOSTS = ("shading.frag", "deferred_lighting.frag")
-#: Fragment shaders that light samples or individual splats.
-LIGHTING_HOSTS = (*LIT_HOSTS, "lit_splats.frag")
 
 
 def _stored(tile: TileContext, placed: DrawItem, sampler: str) -> DeviceTexture:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ..plan.graph import Part
-from .drawing import LIT_HOSTS
+from ..plan.hosts import LIT_HOSTS
 
 VALUES = {"edge_threshold": ("float", lambda tile: tile.settings.edge_threshold)}
 

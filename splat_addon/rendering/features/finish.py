@@ -11,13 +11,13 @@ from collections import Counter
 from functools import partial
 
 from ..plan.graph import Part, Texture
+from ..plan.hosts import BLENDED, LIGHTING_HOSTS, LIT_HOSTS, SPLAT_HOSTS, Host, Kind
 from ..plan.planning import any_of
 from ..scene import Finish
 from ..scene.table import Kinds
 from ..shading_models.brdf_table import edge_texels
 from ..upload.packing import MAX_FINISHES, finish_matrix
 from . import gbuffer, lights, materials, outputs
-from .drawing import LIGHTING_HOSTS, LIT_HOSTS, SPLAT_HOSTS
 
 SHARES = Texture("gbuffer_finish", is_multisampled=True, is_sum=True)
 
@@ -53,7 +53,7 @@ def _counted(kinds: Kinds) -> Counter[Finish]:
 def _has_room(planning) -> bool:
     """Whether the other sums of a frame leave room for one more."""
     has_layers = any_of(lambda instance: instance.is_transparent, planning.surfels)
-    kinds = ("opaque", "layer") if has_layers else ("opaque",)
+    kinds = BLENDED if has_layers else (Kind.OPAQUE,)
     sums = 2 + any(gbuffer.depths_are_apart(planning, kind) for kind in kinds) + sum(materials.differ(planning))
     return sums + lights.are_linked(planning) + outputs.counts_splats(planning) < outputs.MAX_COLORS
 
@@ -107,7 +107,7 @@ def parts(planning, p):
         return
     drawn = {"inputs": ("materials",), "constants": materials.texels(planning)}
     differ, layers = bool(summed(planning)), _layers(planning.find(found))
-    if p.host in SPLAT_HOSTS and p.kind in ("opaque", "layer") and differ:
+    if p.host in SPLAT_HOSTS and p.kind in BLENDED and differ:
         yield Part("finish", writes=(SHARES,), varyings=(("flat", "vec4", "finish"),), **drawn)
     if p.host in LIGHTING_HOSTS:
         tables = (_TABLES[layer] for layer in layers if layer in _TABLES)
@@ -115,5 +115,5 @@ def parts(planning, p):
         yield Part("finish", (*layers, *covered), inputs=tuple(tables))
     if p.host in LIT_HOSTS and differ:
         yield Part("finish", ("finishes_differ",), reads=(SHARES,))
-    if p.host == "lit_splats.frag" and differ:
+    if p.host == Host.LIT_SPLATS and differ:
         yield Part("finish", ("finishes_differ",), **drawn)

@@ -8,9 +8,9 @@ not linear in the normal, so it comes before the mean, as in the exact picture, 
 from __future__ import annotations
 
 from ..plan.graph import Part
+from ..plan.hosts import LIT_HOSTS
 from ..plan.tiles import tile_edge
 from . import clip_lines
-from .drawing import LIT_HOSTS
 
 CONSTANTS = {"FOLD_REACH": 4}
 

@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 from ..plan.graph import Part, Pass, Texture
+from ..plan.hosts import LIT_HOSTS, RASTERIZED, Host, Kind
 from ..plan.planning import count
 from . import depth_format, lit_splats, shadows, visibility
-from .drawing import LIT_HOSTS, draw_splats
+from .drawing import draw_splats
 from .rasterizers import rasterized
 
 NAMES = ("gbuffer", "depth_in_normals", "gbuffer_depth")
@@ -23,18 +24,18 @@ DEPTH_PLANE_SUM = Texture("gbuffer_depth", "RGBA32F", is_multisampled=True)
 SPRITE_DEPTH = Texture("sprite_depth", "DEPTH32F")
 
 
-def depths_are_apart(planning, kind: str) -> bool:
+def depths_are_apart(planning, kind: Kind) -> bool:
     """Whether depths are summed separately from normals."""
-    return kind == "layer" or planning.settings.sum_format == "float16"
+    return kind == Kind.LAYER or planning.settings.sum_format == "float16"
 
 
 def depth_sum(planning) -> Texture:
     """The sum of separate depths, of all passes alike."""
-    has_planes = planning.find(shadows.maps) and lit_splats.lights_samples(planning, "opaque")
+    has_planes = planning.find(shadows.maps) and lit_splats.lights_samples(planning, Kind.OPAQUE)
     return DEPTH_PLANE_SUM if has_planes else DEPTH_SUM
 
 
-def depth_parts(planning, kind: str, **fields) -> Part:
+def depth_parts(planning, kind: Kind, **fields) -> Part:
     """The parts for depths, which are stored beside normals or separately. fields: further fields of the part."""
     if not depths_are_apart(planning, kind):
         return Part("depth_in_normals", **fields)
@@ -55,13 +56,13 @@ def state(planning) -> dict:
     }
 
 
-def attributes(planning, reason: str, tests: Texture | None, kind: str = "opaque") -> Pass:
+def attributes(planning, reason: str, tests: Texture | None, kind: Kind = Kind.OPAQUE) -> Pass:
     """The attribute pass, with a depth for the hardware's test."""
     own = Part("gbuffer", writes=(COLOR,), tests=(tests,) if tests else ())
     own_parts = own, *rasterized(planning), depth_parts(planning, kind, writes=(NORMAL,))
     if planning.method.rasterizer == "point_sprite":
         own_parts += (Part("gbuffer", writes=(SPRITE_DEPTH,)),)
-    host, lit = f"{planning.method.rasterizer}.frag", lit_splats.each(planning)
+    host, lit = RASTERIZED[planning.method.rasterizer], lit_splats.each(planning)
     return Pass("attributes", reason, host, lit_splats.run if lit else run, own_parts, kind, state(planning), each=lit)
 
 
@@ -77,7 +78,7 @@ def passes(planning):
 
 
 def parts(planning, p):
-    if p.host in (*LIT_HOSTS, "lines.frag"):
+    if p.host in (*LIT_HOSTS, Host.LINES):
         yield depth_parts(planning, p.kind, reads=(COLOR, NORMAL))
 
 
@@ -92,7 +93,7 @@ def _why(planning) -> str:
 
 def run(tile, p: Pass):
     """Fill the sums; textured instances use programs that look up colours."""
-    target, vertex = tile.target(p), p.host.replace(".frag", ".vert")
+    target, vertex = tile.target(p), p.host.vertex
     tile.clear(target, color=0.0, depth=1.0 if p.state["depth_write"] else None)
     drawn = tile.drawn_by(p)
     yield from draw_splats(tile, p, target, drawn.of_kinds(lambda i: not i.is_textured), vertex)

@@ -4,8 +4,8 @@
 from __future__ import annotations
 
 from ..plan.graph import Part
+from ..plan.hosts import DRAWING_HOSTS, Host, Kind
 from ..plan.planning import count, counted
-from .drawing import SPLAT_HOSTS
 
 
 def _count(planning) -> int:
@@ -18,5 +18,5 @@ passes, is_present = counted(
 
 
 def parts(planning, p):
-    if p.host in (*SPLAT_HOSTS, "visibility.frag") and p.kind == "opaque":
-        yield Part("hidden_backs", only="splats" if p.host == "visibility.frag" else "")
+    if p.host in DRAWING_HOSTS and p.kind == Kind.OPAQUE:
+        yield Part("hidden_backs", only="splats" if p.host == Host.VISIBILITY else "")

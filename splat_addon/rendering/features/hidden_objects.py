@@ -17,6 +17,7 @@ from ..culling.cover import COVER_CELL, Cover
 from ..culling.hidden_blocks import BlocksFrontToBack
 from ..methods import get_method
 from ..plan.graph import Part, Pass, Texture, of_samples
+from ..plan.hosts import Host
 from ..scene.table import Kind
 from ..view import DrawItem, Items
 from . import levels
@@ -94,7 +95,7 @@ def looking(name: str, farthest: Texture, rows: int = 1) -> Pass:
         called=((farthest, FARTHEST.name),),
         constants=(("ROWS", rows),),
     )
-    return Pass(name, "how far each cell sees", "hidden_objects.frag", _run_by_visibility, (own,))
+    return Pass(name, "how far each cell sees", Host.HIDDEN_OBJECTS, _run_by_visibility, (own,))
 
 
 def _run_by_visibility(tile, p: Pass):

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..culling.backs import show_backs
 from ..plan.graph import Part, Pass, Texture, fill, of_samples
+from ..plan.hosts import Host, Kind
 from ..scene import Instance
 from . import depth_bounds
 
@@ -45,7 +46,7 @@ def pays(planning) -> str:
 def passes(planning):
     if planning.shown and (why := planning.find(pays)):
         own = Part("hiz", reads=(depth_bounds.BOUNDS,), writes=(FARTHEST,))
-        yield Pass("hiz", why, "hiz.frag", fill, (own,))
+        yield Pass("hiz", why, Host.HIZ, fill, (own,))
 
 
 def is_present(planning) -> bool:
@@ -53,5 +54,5 @@ def is_present(planning) -> bool:
 
 
 def parts(planning, p):
-    if p.host == "screen_space.frag" and p.kind == "opaque":
+    if p.host == Host.SCREEN_SPACE and p.kind == Kind.OPAQUE:
         yield Part("hiz", reads=(FARTHEST,))

@@ -6,9 +6,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ..plan.graph import Part, Pass, Texture
+from ..plan.hosts import LIT_HOSTS, SPLAT_HOSTS, Host, Kind
 from ..plan.planning import count
 from . import silhouettes, visibility
-from .drawing import LIT_HOSTS, SPLAT_HOSTS
 
 DEPTH = Texture("holdout_depth", "DEPTH32F")
 ROW_DEPTH = Texture("row_holdout_depth", "DEPTH32F", silhouettes.of_rows)
@@ -30,7 +30,7 @@ def passes(planning):
     if cutting and planning.method.rasterizer == "screen_space":
         own = visibility.own_parts(planning, visibility.nearest_depth(planning, DEPTH, ROW_DEPTH))
         why = "a filter brings what lies behind a hole before it"
-        yield visibility.drawn("holdouts", why, own, planning, "holes")._replace(run=run)
+        yield visibility.drawn("holdouts", why, own, planning, Kind.HOLES)._replace(run=run)
 
 
 def is_present(planning) -> bool:
@@ -38,20 +38,20 @@ def is_present(planning) -> bool:
 
 
 def parts(planning, p):
-    if p.kind != "opaque":
+    if p.kind != Kind.OPAQUE:
         return
-    if p.host == "depth_bounds.frag":
+    if p.host == Host.DEPTH_BOUNDS:
         depth = visibility.nearest_depth(planning, DEPTH, ROW_DEPTH)
         yield Part("holdout", reads=(depth,), called=((depth, "holes"),))
     if p.host in LIT_HOSTS:
         yield Part("holdout", reads=(visibility.DEPTH,))
-    if p.host in ("screen_space.frag", "resolve.frag"):
+    if p.host in (Host.SCREEN_SPACE, Host.RESOLVE):
         yield Part("holdout")
 
 
 def draws(tile, p: Pass, instance) -> bool:
     """Whether a pass draws an object: holdouts have depth only."""
-    return not (instance.is_holdout and p.kind == "opaque" and p.host in SPLAT_HOSTS and tile.plan.has("HOLDOUT"))
+    return not (instance.is_holdout and p.kind == Kind.OPAQUE and p.host in SPLAT_HOSTS and tile.plan.has("HOLDOUT"))
 
 
 def run(tile, p):

@@ -10,10 +10,10 @@ from __future__ import annotations
 
 from ..detail import hierarchies, levels
 from ..plan.graph import Part
+from ..plan.hosts import SPLAT_HOSTS, Host
 from ..plan.planning import count
 from ..upload.cuts import NUMBERS_PER_ROW
 from . import lit_splats
-from .drawing import SPLAT_HOSTS
 
 CONSTANTS = {"NUMBERS_PER_ROW": NUMBERS_PER_ROW}
 
@@ -59,5 +59,5 @@ def is_present(planning) -> bool:
 
 def parts(planning, p):
     """The part that draws a cut, or lights it splat by splat."""
-    if p.host in (*SPLAT_HOSTS, "visibility.frag", "lit_splats.frag"):
+    if p.host in (*SPLAT_HOSTS, Host.VISIBILITY, Host.LIT_SPLATS):
         yield Part("levels", inputs=("drawn_splats",), only="cut")

@@ -5,9 +5,9 @@ stored for a later filter."""
 from __future__ import annotations
 
 from ..plan.graph import Part, Pass, Texture
+from ..plan.hosts import LIGHTING_HOSTS, Host, Kind
 from ..read_back import background_texels
 from . import depth_bounds, outputs, silhouettes, visibility
-from .drawing import LIGHTING_HOSTS
 
 NAMES = ("lighting", "picture")
 SHADED = Texture("shaded")
@@ -38,13 +38,13 @@ def fill_pixels(tile, p: Pass):
     return fill_lit(tile, p)
 
 
-def deferred(planning, reason: str, kind: str = "opaque") -> Pass:
+def deferred(planning, reason: str, kind: Kind = Kind.OPAQUE) -> Pass:
     """The pass that shades and stores every sample."""
     own = Part("lighting", writes=(SHADED, SURFACE), constants=_samples(planning))
-    return Pass("deferred_lighting", reason, "deferred_lighting.frag", fill_lit, (own,), kind)
+    return Pass("deferred_lighting", reason, Host.DEFERRED_LIGHTING, fill_lit, (own,), kind)
 
 
-def _filtered(planning, reason: str, seen: Texture, writes, kind: str = "opaque", state=None) -> Pass:
+def _filtered(planning, reason: str, seen: Texture, writes, kind: Kind = Kind.OPAQUE, state=None) -> Pass:
     """The pass that filters silhouettes."""
     own = Part(
         "lighting",
@@ -54,21 +54,21 @@ def _filtered(planning, reason: str, seen: Texture, writes, kind: str = "opaque"
         constants=(("SAMPLES", planning.settings.supersampling), ("ROWS", silhouettes.rows_of(seen))),
     )
     run = fill_lit if state else fill_pixels
-    return Pass("resolve", reason, "resolve.frag", run, (own,), kind, state or {}, adds=bool(state))
+    return Pass("resolve", reason, Host.RESOLVE, run, (own,), kind, state or {}, adds=bool(state))
 
 
 def layer_pixels(planning, depth: Texture, writes: tuple[Texture, ...]) -> Pass:
     """The pass that adds a transparent layer with these depths to the pixels."""
     add = {"blend": "add"}
     if planning.method.filters_silhouettes:
-        return _filtered(planning, "nearer layers cover it", depth, writes, "layer", add)
+        return _filtered(planning, "nearer layers cover it", depth, writes, Kind.LAYER, add)
     own = Part(
         "lighting",
         reads=(SHADED, SURFACE, depth),
         writes=writes,
         constants=(("SAMPLES", planning.settings.supersampling),),
     )
-    return Pass("layer", "nearer layers cover it", "layer.frag", fill_lit, (own,), "layer", add, adds=True)
+    return Pass("layer", "nearer layers cover it", Host.LAYER, fill_lit, (own,), Kind.LAYER, add, adds=True)
 
 
 def passes(planning):
@@ -80,11 +80,11 @@ def passes(planning):
         yield _filtered(planning, "silhouettes are filtered", visibility.nearest_depth(planning), pixels)
     else:
         own = Part("lighting", writes=pixels, constants=_samples(planning))
-        yield Pass("shading", once, "shading.frag", fill_pixels, (own,))
+        yield Pass("shading", once, Host.SHADING, fill_pixels, (own,))
 
 
 def parts(planning, p):
     if p.host in LIGHTING_HOSTS and planning.model.tables:
         yield Part("lighting", inputs=tuple(planning.model.tables))
-    if p.kind == "opaque" and p.host in ("deferred_lighting.frag", "resolve.frag"):
+    if p.kind == Kind.OPAQUE and p.host in (Host.DEFERRED_LIGHTING, Host.RESOLVE):
         yield Part("picture")

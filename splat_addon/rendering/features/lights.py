@@ -4,8 +4,8 @@
 from __future__ import annotations
 
 from ..plan.graph import Part, Texture
+from ..plan.hosts import BLENDED, LIGHTING_HOSTS, LIT_HOSTS, SPLAT_HOSTS, Host
 from . import shadows
-from .drawing import LIGHTING_HOSTS, LIT_HOSTS, SPLAT_HOSTS
 
 NAMES = ("lights", "light_links", "sized_lights")
 VALUES = {"light_count": ("float", lambda tile: len(tile.scene.lights))}
@@ -38,13 +38,13 @@ def passes(planning):
 
 def parts(planning, p):
     is_lit = planning.model.is_lit and planning.scene.lights
-    if p.host in SPLAT_HOSTS and p.kind in ("opaque", "layer") and are_linked(planning):
+    if p.host in SPLAT_HOSTS and p.kind in BLENDED and are_linked(planning):
         yield Part("light_links", writes=(SETS,))
     if p.host in LIT_HOSTS and is_lit:
         yield Part("lights", inputs=("lights",))
         if are_linked(planning):
             yield Part("light_links", reads=(SETS,))
-    if p.host == "lit_splats.frag" and is_lit:
+    if p.host == Host.LIT_SPLATS and is_lit:
         yield Part("lights", inputs=("lights",))
         if are_linked(planning):
             yield Part("light_links")

@@ -6,8 +6,8 @@ from __future__ import annotations
 import math
 
 from ..plan.graph import Part, Pass, Texture, fill
+from ..plan.hosts import LIT_HOSTS, Host, Kind
 from ..scene.lines import CREASE_REACH
-from .drawing import LIT_HOSTS
 
 CONSTANTS = {"CREASE_REACH": CREASE_REACH}
 VALUES = {
@@ -35,7 +35,7 @@ def passes(planning):
         choices=(("samples", "mean" if settings.multisampling else "each"),),
     )
     why = "silhouettes and creases are drawn before their samples are mixed"
-    yield Pass("lines", why, "lines.frag", fill, (own,))
+    yield Pass("lines", why, Host.LINES, fill, (own,))
 
 
 def is_present(planning) -> bool:
@@ -43,7 +43,7 @@ def is_present(planning) -> bool:
 
 
 def parts(planning, p):
-    if p.host in LIT_HOSTS and p.kind == "opaque":
+    if p.host in LIT_HOSTS and p.kind == Kind.OPAQUE:
         yield Part("lines", reads=(COVERED,))
 
 

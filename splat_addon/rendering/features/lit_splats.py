@@ -9,11 +9,12 @@ lit at samples, and colours blend (Guennebaud et al. 2006, section 5.1).
 from __future__ import annotations
 
 from ..plan.graph import Part, Pass, Texture
+from ..plan.hosts import BLENDED, LIT_HOSTS, SPLAT_HOSTS, Host, Kind
 from ..scene import Instance
 from ..shading_models import ShadingModel, get_shading_model
 from ..upload.packing import SPLATS_PER_ROW, row_count
 from ..upload.parts import largest_part
-from .drawing import LIT_HOSTS, SPLAT_HOSTS, Programs, draw_block, draw_parts, storage_samplers
+from .drawing import Programs, draw_block, draw_parts, storage_samplers
 
 
 def _of_splats(plan, pixels: tuple[int, int]) -> tuple[int, int]:
@@ -37,15 +38,15 @@ def wanted(planning) -> bool:
     return True
 
 
-def lights_samples(planning, kind: str) -> bool:
+def lights_samples(planning, kind: Kind) -> bool:
     """Whether passes of this kind light samples: without this feature, and where polygons are among the splats."""
-    return not planning.find(wanted) or (kind == "opaque" and bool(planning.scene.polygons))
+    return not planning.find(wanted) or (kind == Kind.OPAQUE and bool(planning.scene.polygons))
 
 
 def model_in(planning, p: Pass) -> ShadingModel:
     """The shading model of a pass: samples show blended colours unchanged."""
     asked_for = get_shading_model(planning.settings.shading)
-    of_samples = p.kind in ("opaque", "layer") and p.host in (*LIT_HOSTS, *SPLAT_HOSTS)
+    of_samples = p.kind in BLENDED and p.host in LIT_HOSTS | SPLAT_HOSTS
     return get_shading_model("flat") if of_samples and not lights_samples(planning, p.kind) else asked_for
 
 
@@ -59,11 +60,11 @@ def light(planning, kinds) -> Pass:
     rows = max((row_count(largest_part(len(kind.placed.surfels))) for kind in kinds), default=1)
     planning.facts["lit_rows"] = max(rows, planning.facts.get("lit_rows", 0))
     own = Part("lit_splats", inputs=storage_samplers(planning.settings.storage), writes=(LIT,))
-    return Pass("light_splats", "each splat is lit by itself", "lit_splats.frag", run, (own,), "rest")
+    return Pass("light_splats", "each splat is lit by itself", Host.LIT_SPLATS, run, (own,), Kind.REST)
 
 
 def parts(planning, p):
-    if not planning.find(wanted) or p.kind not in ("opaque", "layer"):
+    if not planning.find(wanted) or p.kind not in BLENDED:
         return
     if p.host in SPLAT_HOSTS:
         yield Part("lit_splats", reads=(LIT,))
@@ -77,7 +78,7 @@ def run(tile, p: Pass):
     """Fill the sums, one instance or part of one after another; its splats are lit first, one fragment each, at the
     texel of its place among those that are drawn."""
     target, lit = tile.target(p), tile.target(p.each)
-    lights, programs = Programs(tile, p.each, "fullscreen.vert"), Programs(tile, p, p.host.replace(".frag", ".vert"))
+    lights, programs = Programs(tile, p.each, "fullscreen.vert"), Programs(tile, p, p.host.vertex)
     tile.clear(target, color=0.0, depth=1.0 if p.state["depth_write"] else None)
     for placed, cut in (part for each in tile.drawn_by(p) for part in tile.in_parts(each)):
         light = yield from lights.of(*(() if cut.numbers is None else ("cut",)))

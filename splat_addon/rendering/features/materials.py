@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 from ..plan.graph import Part, Texture
+from ..plan.hosts import BLENDED, LIGHTING_HOSTS, LIT_HOSTS, SPLAT_HOSTS, Host
 from ..upload.packing import pack_materials, shared_emission, shared_material
-from .drawing import LIGHTING_HOSTS, LIT_HOSTS, SPLAT_HOSTS, pooled
+from .drawing import pooled
 
 NAMES = ("materials", "emission")
 
@@ -74,7 +75,7 @@ def texels(planning):
 def parts(planning, p):
     (has_materials, has_emissions), (_, emission) = differ(planning), planning.find(shared)
     drawn = {"inputs": ("materials",), "constants": texels(planning)}
-    if p.host in SPLAT_HOSTS and p.kind in ("opaque", "layer"):
+    if p.host in SPLAT_HOSTS and p.kind in BLENDED:
         if has_materials:
             yield Part("materials", writes=(MATERIAL,), varyings=(("flat", "vec3", "material"),), **drawn)
         if has_emissions:
@@ -85,7 +86,7 @@ def parts(planning, p):
             yield Part("materials", reads=(MATERIAL,))
         if has_emissions:
             yield Part("emission", ("gbuffer_emission",), reads=(EMISSION,))
-    if p.host == "lit_splats.frag":
+    if p.host == Host.LIT_SPLATS:
         if has_materials:
             yield Part("materials", **drawn)
         if has_emissions:

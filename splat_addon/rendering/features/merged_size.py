@@ -6,9 +6,9 @@ from __future__ import annotations
 
 from ...hierarchy.nodes import MERGED_WEIGHT
 from ..plan.graph import Part
+from ..plan.hosts import SPLAT_HOSTS, Host
 from ..plan.planning import any_of
 from . import levels
-from .drawing import SPLAT_HOSTS
 
 CONSTANTS = {"MERGED_WEIGHT": MERGED_WEIGHT}
 
@@ -18,5 +18,5 @@ def is_present(planning) -> bool:
 
 
 def parts(planning, p):
-    if p.host in (*SPLAT_HOSTS, "visibility.frag", "lit_splats.frag"):
-        yield Part("merged_size", only="splats" if p.host == "visibility.frag" else "")
+    if p.host in (*SPLAT_HOSTS, Host.VISIBILITY, Host.LIT_SPLATS):
+        yield Part("merged_size", only="splats" if p.host == Host.VISIBILITY else "")

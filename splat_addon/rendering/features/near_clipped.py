@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from ..plan.graph import Part
+from ..plan.hosts import Host
 from . import depth_format
 
 
@@ -22,5 +23,5 @@ def is_present(planning) -> bool:
 
 
 def parts(planning, p):
-    if p.host == "screen_space.frag":
+    if p.host == Host.SCREEN_SPACE:
         yield Part("near_clipped", varyings=(("flat", "float", "near_clipped"),))

@@ -5,9 +5,10 @@ from __future__ import annotations
 
 from ...normal_fields import NORMAL_STEP, share_of
 from ..plan.graph import Part
+from ..plan.hosts import BLENDED, SPLAT_HOSTS, Host, Kind
 from ..plan.planning import count, counted
 from . import lit_splats
-from .drawing import SPLAT_HOSTS, pooled
+from .drawing import pooled
 
 CONSTANTS = {"NORMAL_STEP": NORMAL_STEP}
 
@@ -30,7 +31,7 @@ ARRIVES = {"normal_fields": _has_field}
 def _count(planning) -> int:
     """The number of instances with such normals, if any normal is looked at where splats have been added up."""
     settings, model = planning.settings, planning.model
-    is_lit = model.is_lit and lit_splats.lights_samples(planning, "opaque")
+    is_lit = model.is_lit and lit_splats.lights_samples(planning, Kind.OPAQUE)
     is_seen = is_lit or model.shows_normals or "normal" in settings.outputs or settings.lines is not None
     return count(_has_field, planning.surfels) if is_seen else 0
 
@@ -45,7 +46,7 @@ passes, is_present = counted(
 
 
 def parts(planning, p):
-    if p.host in SPLAT_HOSTS and p.kind in ("opaque", "layer"):
-        words = ("turns_sprites",) if p.host == "point_sprite.frag" else ()
+    if p.host in SPLAT_HOSTS and p.kind in BLENDED:
+        words = ("turns_sprites",) if p.host == Host.POINT_SPRITE else ()
         constants = (("NORMAL_SHARE", repr(share_of(planning.settings.as_printed))),)
         yield Part("normal_fields", words, inputs=("normal_fields",), varyings=_VARYINGS, constants=constants)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from ..plan.graph import Part
+from ..plan.hosts import Host, Kind
 from ..plan.planning import count, counted
 from .textures import ATLAS, PLANE, pixel_variance
 
@@ -31,9 +32,9 @@ passes, is_present = counted(
 
 def parts(planning, p):
     table = ("TABLE_PARTS", 2)
-    if p.host == "visibility.frag" and p.kind != "layer":
+    if p.host == Host.VISIBILITY and p.kind != Kind.LAYER:
         yield Part("normal_maps", constants=(table,), only="bumped")
-    if p.host == "polygons.frag":
+    if p.host == Host.POLYGONS:
         yield Part("polygon_plane", varyings=PLANE, only="bumped")
         constants = (table, ("BUMP_VARIANCE", repr(pixel_variance(planning))))
         inputs = "polygon_bumps", *ATLAS

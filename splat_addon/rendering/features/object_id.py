@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from ..identity import NUMBERED
 from ..plan.graph import Part, Pass, Texture
+from ..plan.hosts import BLENDED, RASTERIZED, Host, Kind
 from . import silhouettes, visibility
 from .drawing import draw_splats
 from .rasterizers import rasterized
@@ -56,8 +57,8 @@ def passes(planning):
         words = ("edge_ids", "in_space") if in_space else ("edge_ids",)
         own = Part("object_id", words, (visibility.DEPTH,), writes=(IDENTITY, EDGE_DEPTH), varyings=_VARYINGS)
         state = {"depth_test": True, "depth_write": True, "fragment_depth": in_space}
-        host, parts = f"{method.rasterizer}.frag", (own, *rasterized(planning))
-        yield Pass("edge_ids", why, host, run_edges, parts, "edge_ids", state, adds=True)
+        host, parts = RASTERIZED[method.rasterizer], (own, *rasterized(planning))
+        yield Pass("edge_ids", why, host, run_edges, parts, Kind.EDGE_IDS, state, adds=True)
 
 
 def is_present(planning) -> bool:
@@ -65,18 +66,18 @@ def is_present(planning) -> bool:
 
 
 def parts(planning, p):
-    if p.host == "visibility.frag" and p.kind in ("opaque", "layer"):
-        texture = LAYER_IDENTITY if p.kind == "layer" else IDENTITY
-        if p.kind == "opaque" and planning.find(silhouettes.have_rows):
+    if p.host == Host.VISIBILITY and p.kind in BLENDED:
+        texture = LAYER_IDENTITY if p.kind == Kind.LAYER else IDENTITY
+        if p.kind == Kind.OPAQUE and planning.find(silhouettes.have_rows):
             texture = ROW_IDENTITY
-        reason = f"{', '.join(asked_for(planning))} tell whose it is" if p.kind == "opaque" else ""
+        reason = f"{', '.join(asked_for(planning))} tell whose it is" if p.kind == Kind.OPAQUE else ""
         called = ((texture, "identity"),)
         yield Part("object_id", writes=(texture,), called=called, varyings=_VARYINGS, reason=reason)
-    if p.host == "point_sprite.frag":
+    if p.host == Host.POINT_SPRITE:
         yield Part("object_id", writes=(IDENTITY,), varyings=_VARYINGS)
-    if p.host == "polygons.frag" and _polygons_apart(planning):
+    if p.host == Host.POLYGONS and _polygons_apart(planning):
         yield Part("object_id", writes=(POLYGON_IDENTITY,), varyings=_VARYINGS)
-    if p.host == "peel.frag":
+    if p.host == Host.PEEL:
         yield Part("object_id", reads=(LAYER_IDENTITY,), updates=(IDENTITY,))
 
 
@@ -84,5 +85,5 @@ def run_edges(tile, p: Pass):
     """Fill gaps that the visibility pass left in the numbers with the nearest splat footprint."""
     target = tile.target(p)
     tile.clear(target, depth=1.0)
-    yield from draw_splats(tile, p, target, tile.drawn_by(p), p.host.replace(".frag", ".vert"))
+    yield from draw_splats(tile, p, target, tile.drawn_by(p), p.host.vertex)
     return target

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from ..plan.graph import Part, Pass, Texture, fill, fill_all
+from ..plan.hosts import RASTERIZED, Host, Kind
 from . import gbuffer, lighting, lit_splats
 from .rasterizers import rasterized
 
@@ -18,15 +19,15 @@ def passes_of_rest(planning, peeled: Texture, layers: Texture) -> tuple[Pass, ..
     add = {"blend": "add"}
     rest = Part("oit", ("rest",), (lit_splats.LIT,), writes=(ACCUM, WEIGHT)), *rasterized(planning)
     state = gbuffer.state(planning) | {"depth_test": False}
-    host = f"{planning.method.rasterizer}.frag"
+    host = RASTERIZED[planning.method.rasterizer]
     shade = Part("oit", reads=(ACCUM, WEIGHT, gbuffer.depth_sum(planning)), writes=(lighting.SHADED,))
     put = Part("oit", reads=(lighting.SHADED, peeled), writes=(layers,), constants=samples)
     peel = Part("oit", reads=(lighting.SHADED,), updates=(peeled,))
     transparent = [kind for kind in planning.surfels if kind.placed.is_transparent]
     run, each = lit_splats.run, lit_splats.light(planning, transparent)
     return (
-        Pass("rest", "all that is left is added up", host, run, rest, "rest", state, each=each),
-        Pass("oit_shading", "its weights tell how much it hides", "oit_shading.frag", fill, (shade,), "rest"),
-        Pass("oit_layer", "nearer layers cover it", "oit_layer.frag", fill, (put,), "rest", add, adds=True),
-        Pass("peel_oit", "it covers what is opaque", "peel_oit.frag", fill_all, (peel,), "rest"),
+        Pass("rest", "all that is left is added up", host, run, rest, Kind.REST, state, each=each),
+        Pass("oit_shading", "its weights tell how much it hides", Host.OIT_SHADING, fill, (shade,), Kind.REST),
+        Pass("oit_layer", "nearer layers cover it", Host.OIT_LAYER, fill, (put,), Kind.REST, add, adds=True),
+        Pass("peel_oit", "it covers what is opaque", Host.PEEL_OIT, fill_all, (peel,), Kind.REST),
     )

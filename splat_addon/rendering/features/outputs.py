@@ -10,8 +10,8 @@ from __future__ import annotations
 from ..frame import HELD_BY
 from ..plan.frame_plan import FramePlan
 from ..plan.graph import Part, Texture, of_pixels
+from ..plan.hosts import LIGHTING_HOSTS, LIT_HOSTS, SPLAT_HOSTS, Host, Kind
 from . import shadows
-from .drawing import LIT_HOSTS, SPLAT_HOSTS
 
 #: Maximum number of colour textures in a target, Blender's limit.
 MAX_COLORS = 6
@@ -29,7 +29,7 @@ NAMES = ("overdraw", "weight_output", "shadow_output", "normal_coverage", *_HAND
 LAYERS_NORMAL = Texture("layers_normal", per=of_pixels)
 OVERDRAW = Texture("gbuffer_overdraw", "R32F", is_multisampled=True)
 
-_HOSTS = (*LIT_HOSTS, *SPLAT_HOSTS, "lit_splats.frag", "resolve.frag", "layer.frag", "background.frag")
+_HOSTS = LIGHTING_HOSTS | SPLAT_HOSTS | {Host.RESOLVE, Host.LAYER, Host.BACKGROUND}
 
 #: Functions know an output by one name, whichever texture it is written to.
 CALLED = tuple((kind[name], f"out_{name}") for kind in (PIXELS, SAMPLES, LAYERS) for name in _HANDED_ON)
@@ -97,10 +97,10 @@ def _found(planning):
 
 
 def parts(planning, p):
-    if not p.host.endswith(_HOSTS):
+    if p.host not in _HOSTS:
         return
-    model, in_layer = planning.model, p.kind == "layer"
-    is_counted = counts_splats(planning) and p.kind == "opaque"
+    model, in_layer = planning.model, p.kind == Kind.LAYER
+    is_counted = counts_splats(planning) and p.kind == Kind.OPAQUE
     if is_counted:
         yield from _count(planning, p)
     if p.host in LIT_HOSTS and model.features:
@@ -108,8 +108,8 @@ def parts(planning, p):
     if p.host in LIT_HOSTS:
         if model.is_lit and planning.scene.lights and "shadow" in planning.settings.outputs:
             yield Part("shadow_output")
-    has_layers = p.host in ("shading.frag", "resolve.frag") and bool(planning.facts.get("layers")) and not in_layer
-    if p.host in ("shading.frag", "resolve.frag", "layer.frag", "background.frag"):
+    has_layers = p.host in (Host.SHADING, Host.RESOLVE) and bool(planning.facts.get("layers")) and not in_layer
+    if p.host in (Host.SHADING, Host.RESOLVE, Host.LAYER, Host.BACKGROUND):
         if "normal_coverage" in planning.find(_found)[0]:
             texture = LAYERS_NORMAL if in_layer else PIXELS["normal_coverage"]
             before = {"reads": (LAYERS_NORMAL,), "words": ("layers_normal",)} if has_layers else {}
@@ -127,13 +127,13 @@ def _handing(planning, p, in_layer: bool, has_layers: bool):
     for name in names:
         words = [*(has_material if p.host in LIT_HOSTS else ())]
         reads = []
-        if p.host in ("resolve.frag", "layer.frag"):
+        if p.host in (Host.RESOLVE, Host.LAYER):
             reads.append(SAMPLES[name])
         if has_layers and name in of_layers:
             reads.append(LAYERS[name])
             words.append(f"layers_{name}")
-        kinds = {"deferred_lighting.frag": SAMPLES, "shading.frag": PIXELS, "background.frag": PIXELS}
-        kinds |= {"resolve.frag": LAYERS if in_layer else PIXELS, "layer.frag": LAYERS}
+        kinds = {Host.DEFERRED_LIGHTING: SAMPLES, Host.SHADING: PIXELS, Host.BACKGROUND: PIXELS}
+        kinds |= {Host.RESOLVE: LAYERS if in_layer else PIXELS, Host.LAYER: LAYERS}
         if p.host in kinds:
             texture = kinds[p.host][name]
             called = ((texture, f"out_{name}"),)

@@ -9,8 +9,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..plan.graph import Part, Pass, Texture
+from ..plan.hosts import LIT_HOSTS, Host, Kind
 from . import depth_format, finish, lights, materials, shadows
-from .drawing import LIT_HOSTS, draw_polygons
+from .drawing import draw_polygons
 
 NAMES = ("polygons", "polygon_plane", "polygon_material")
 VALUES = {"contact": ("float", lambda tile: tile.view.contact)}
@@ -43,7 +44,7 @@ def passes(planning):
         writes=(COLOR, NORMAL, DEPTH),
         varyings=tuple(("smooth", *varying) for varying in varyings),
     )
-    yield Pass("polygons", why, "polygons.frag", run, (own,), state=depth_format.state(planning))
+    yield Pass("polygons", why, Host.POLYGONS, run, (own,), state=depth_format.state(planning))
 
 
 def is_present(planning) -> bool:
@@ -51,11 +52,11 @@ def is_present(planning) -> bool:
 
 
 def parts(planning, p):
-    if p.host == "polygons.frag":
+    if p.host == Host.POLYGONS:
         yield from _drawn(planning)
-    if p.kind == "opaque" and p.host in (*LIT_HOSTS, "lines.frag"):
+    if p.kind == Kind.OPAQUE and p.host in (*LIT_HOSTS, Host.LINES):
         yield from joined(planning)
-    if p.kind == "opaque" and p.host in LIT_HOSTS:
+    if p.kind == Kind.OPAQUE and p.host in LIT_HOSTS:
         differ, glow = materials.differ(planning)
         if differ or lights.are_linked(planning):
             yield Part("polygon_material", reads=(MATERIAL,))

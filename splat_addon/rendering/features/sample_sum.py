@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from ..plan.graph import Part, Pass, Texture
+from ..plan.hosts import Host
 from . import outputs, world
 
 
@@ -29,7 +30,7 @@ def read_back(planning) -> tuple[Texture, ...]:
 def passes(planning):
     if planning.is_added_up and (planning.shown or world.is_shown(planning)):
         own = Part("sample_sum", reads=(outputs.PIXELS["combined"],), writes=(SUM,))
-        yield Pass("accumulate", "a view refines while it rests", "accumulate.frag", run, (own,),
+        yield Pass("accumulate", "a view refines while it rests", Host.ACCUMULATE, run, (own,),
                    state={"blend": "add"}, adds=True)  # fmt: skip
 
 

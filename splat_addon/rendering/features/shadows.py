@@ -7,6 +7,7 @@ import math
 from dataclasses import replace
 
 from ..plan.graph import Part, Pass, Texture
+from ..plan.hosts import BLENDED, LIT_HOSTS, SPLAT_HOSTS, Host, Kind
 from ..plan.planning import any_of
 from ..plan.repeats import Repeats
 from ..scene.camera import Camera
@@ -16,7 +17,7 @@ from ..shadows.maps import MAX_MAPS, atlas_size, map_ranges, pack_shadow_maps, s
 from ..shadows.receivers import NEAREST_SHARE
 from ..view import View
 from . import hidden_objects, lit_splats, visibility
-from .drawing import LIT_HOSTS, SPLAT_HOSTS, pooled
+from .drawing import pooled
 
 #: Offset of polygons, in texels of a map: a filter reaches two texels, over which planes at 45 degrees differ by this.
 SETBACK = 2.0
@@ -83,7 +84,7 @@ def passes(planning):
         casting = len({one.light for one in made})
         why = f"{casting} of {len(planning.scene.lights)} lights cast shadows, through {len(made)} maps"
         own = visibility.own_parts(planning, DEPTH)
-        drawn = visibility.drawn("shadow_maps", why, own, planning, "shadow")
+        drawn = visibility.drawn("shadow_maps", why, own, planning, Kind.SHADOW)
         opaque = [k for k in planning.surfels if k.placed.casts_shadow and not k.placed.is_transparent]
         each = hidden_objects.looking("hidden_casters", FARTHEST) if hidden_objects.may_hide(planning, opaque) else None
         yield drawn._replace(run=run, once=_depends_on, each=each)
@@ -99,14 +100,14 @@ def is_present(planning) -> bool:
     return bool(planning.facts["shadow_maps"])
 
 
-def plane_sum(planning, kind: str) -> Texture | None:
+def plane_sum(planning, kind: Kind) -> Texture | None:
     """The separate sum of planes; None if they are stored beside depths, or nothing needs them."""
     from . import gbuffer, outputs
 
     is_lit = planning.find(maps) and lit_splats.lights_samples(planning, kind)
     if not is_lit or gbuffer.depths_are_apart(planning, kind):
         return None
-    counts = kind == "opaque" and outputs.counts_splats(planning)
+    counts = kind == Kind.OPAQUE and outputs.counts_splats(planning)
     return PLANE_MORE if counts or planning.find(_lifted) else PLANE
 
 
@@ -120,16 +121,16 @@ def parts(planning, p):
     words, planes = (("planes_apart",), (apart,)) if apart else (("planes_beside_depths",), ())
     lifted = planning.find(_lifted)
     inputs, words = (("surfel_lifts",), (*words, "lifted")) if lifted else ((), words)
-    if p.host == "visibility.frag" and p.kind == "shadow":
+    if p.host == Host.VISIBILITY and p.kind == Kind.SHADOW:
         yield Part("shadows", only="splats")
     if not planning.model.is_lit:
         return
-    if p.host in SPLAT_HOSTS and p.kind in ("opaque", "layer"):
+    if p.host in SPLAT_HOSTS and p.kind in BLENDED:
         varyings = ("flat", "vec2", "splat_faces"), *((("flat", "float", "splat_lift"),) if lifted else ())
         yield Part("shadows", ("adds_planes", *words), inputs=inputs, writes=planes, varyings=varyings)
     if p.host in LIT_HOSTS:
         yield Part("shadows", words, reads=(DEPTH, *planes), inputs=("shadow_maps",))
-    if p.host == "lit_splats.frag":
+    if p.host == Host.LIT_SPLATS:
         yield Part("shadows", words, reads=(DEPTH,), inputs=("shadow_maps", *inputs))
 
 

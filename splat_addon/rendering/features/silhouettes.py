@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from ..plan.frame_plan import FILTER_MARGIN, VISIBILITY_ROWS, FramePlan
 from ..plan.graph import Part, Texture, of_samples
+from ..plan.hosts import BLENDED, Host
 
 CONSTANTS = {"FILTER_REACH": FILTER_MARGIN}
 
@@ -43,7 +44,7 @@ def have_rows(planning) -> bool:
 
 
 def parts(planning, p):
-    if p.host == "screen_space.frag" and p.kind in ("opaque", "layer"):
+    if p.host == Host.SCREEN_SPACE and p.kind in BLENDED:
         yield Part("silhouettes")
-    if p.host in ("depth_bounds.frag", "oit_layer.frag"):
+    if p.host in (Host.DEPTH_BOUNDS, Host.OIT_LAYER):
         yield Part("silhouettes")

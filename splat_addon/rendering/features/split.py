@@ -4,8 +4,8 @@
 from __future__ import annotations
 
 from ..plan.graph import Part
+from ..plan.hosts import SPLAT_HOSTS, Host, Kind
 from ..plan.planning import count, counted
-from .drawing import SPLAT_HOSTS
 
 
 def _count(planning) -> int:
@@ -27,13 +27,13 @@ def parts(planning, p):
     Transparent instances are surfels at every distance, and in shadow maps both forms cast shadows, so their passes
     have no such part.
     """
-    if p.kind in ("layer", "rest", "shadow"):
+    if p.kind in (Kind.LAYER, Kind.REST, Kind.SHADOW):
         return
     varyings = (("smooth", "vec3", "split_place"),)
     if p.host in SPLAT_HOSTS:
         yield Part("split")
-    if p.host == "visibility.frag":
+    if p.host == Host.VISIBILITY:
         yield Part("split")
         yield Part("split", varyings=varyings, only="polygons")
-    if p.host == "polygons.frag":
+    if p.host == Host.POLYGONS:
         yield Part("split", varyings=varyings)

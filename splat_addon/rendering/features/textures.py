@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from ..plan.graph import Part
+from ..plan.hosts import BLENDED, Host
 from ..plan.planning import any_of
 
 #: uv and slot, change of uv along the half-axes, border of the map; and the half-axes.
@@ -51,11 +52,10 @@ def pixel_variance(planning) -> float:
 
 def parts(planning, p):
     shared = {"constants": (("PIXEL_VARIANCE", repr(pixel_variance(planning))),), "only": "textured"}
-    hosts = "object_space.frag", "screen_space.frag"
-    if p.host in hosts and p.kind in ("opaque", "layer") and planning.find(_are_textured)[0]:
-        varyings = (*_VARYINGS, *_AXES) if p.host == "object_space.frag" else _VARYINGS
+    if p.host in (Host.OBJECT_SPACE, Host.SCREEN_SPACE) and p.kind in BLENDED and planning.find(_are_textured)[0]:
+        varyings = (*_VARYINGS, *_AXES) if p.host == Host.OBJECT_SPACE else _VARYINGS
         yield Part("textures", inputs=("surfel_uvs", *ATLAS), varyings=varyings, **shared)
-    if p.host == "polygons.frag" and planning.find(_are_textured)[1]:
+    if p.host == Host.POLYGONS and planning.find(_are_textured)[1]:
         yield Part("polygon_plane", varyings=PLANE, only="textured")
         varyings = (("smooth", "vec2", "texture_uv"), ("flat", "float", "texture_triangle"), *_OF_PLANES)
         yield Part("textures", inputs=("polygon_uvs", *ATLAS), varyings=varyings, **shared)

@@ -6,8 +6,8 @@ from __future__ import annotations
 from ..detail import steps
 from ..plan.batches import INSTANCES_PER_ROW
 from ..plan.graph import Part
+from ..plan.hosts import SPLAT_HOSTS, Host
 from ..plan.uniforms import TEXELS_PER_INSTANCE
-from .drawing import SPLAT_HOSTS
 
 CONSTANTS = {"INSTANCES_PER_ROW": INSTANCES_PER_ROW, "TEXELS_PER_INSTANCE": TEXELS_PER_INSTANCE}
 DRAWN = {"instances": lambda tile, placed: tile.instance_table(placed.items)}
@@ -30,5 +30,5 @@ def is_present(planning) -> bool:
 
 
 def parts(planning, p):
-    if p.host in (*SPLAT_HOSTS, "visibility.frag", "polygons.frag"):
+    if p.host in (*SPLAT_HOSTS, Host.VISIBILITY, Host.POLYGONS):
         yield Part("together", inputs=("instances",), choices=(("instances", "table"),), only="together")

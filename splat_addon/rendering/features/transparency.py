@@ -16,9 +16,9 @@ of its samples, and so does the opaque picture behind them.
 from __future__ import annotations
 
 from ..plan.graph import Loop, Part, Pass, Texture, fill_all, of_pixels
+from ..plan.hosts import SPLAT_HOSTS, Host, Kind
 from ..plan.planning import any_of
 from . import depth_bounds, gbuffer, lighting, oit, outputs, visibility
-from .drawing import SPLAT_HOSTS
 
 #: Samples that are read on each side of a layer's.
 LAYER_MARGIN = 1
@@ -64,7 +64,7 @@ def passes(planning):
     cleared = PEELED, COLOR, COLOR_DEPTH
     more = (outputs.LAYERS_NORMAL,) if "normal_coverage" in outputs.wanted(planning) else ()
     more += tuple(outputs.LAYERS[name] for name in outputs.handed_on(planning, True))
-    yield Pass("start_layers", "nothing is peeled yet", "", start, (Part("transparency", writes=(*cleared, *more)),))
+    yield Pass("start_layers", "nothing is peeled yet", None, start, (Part("transparency", writes=(*cleared, *more)),))
     peeled = count - planning.settings.blends_rest
     last = oit.passes_of_rest(planning, PEELED, COLOR) if planning.settings.blends_rest else ()
     yield Loop("layers", "from the nearest to the farthest", peeled, _body(planning), OCCUPANCY, last)
@@ -73,18 +73,18 @@ def passes(planning):
 def _body(planning) -> tuple[Pass, ...]:
     in_space = planning.method.rasterizer == "object_space"
     own, ends = visibility.own_parts(planning, DEPTH, has_polygons=False), "layers end where nothing is left"
-    found = visibility.drawn("visibility", "behind nearer layers, before what is opaque", own, planning, "layer")
+    found = visibility.drawn("visibility", "behind nearer layers, before what is opaque", own, planning, Kind.LAYER)
     occupied = Part("transparency", reads=(DEPTH,), writes=(OCCUPANCY,))
-    bounds = depth_bounds.bounds(planning, "depths are compared in the shader", DEPTH, "layer")
+    bounds = depth_bounds.bounds(planning, "depths are compared in the shader", DEPTH, Kind.LAYER)
     peel = Part("transparency", reads=(DEPTH, lighting.SHADED), updates=(PEELED,))
     return (
         found,
-        Pass("layer_occupancy", ends, "layer_occupancy.frag", fill_all, (occupied,), "layer"),
+        Pass("layer_occupancy", ends, Host.LAYER_OCCUPANCY, fill_all, (occupied,), Kind.LAYER),
         *(() if in_space else (bounds,)),
-        gbuffer.attributes(planning, "splats of one layer blend", DEPTH, "layer"),
-        lighting.deferred(planning, "a layer is lit once", "layer"),
+        gbuffer.attributes(planning, "splats of one layer blend", DEPTH, Kind.LAYER),
+        lighting.deferred(planning, "a layer is lit once", Kind.LAYER),
         lighting.layer_pixels(planning, DEPTH, (COLOR, COLOR_DEPTH)),
-        Pass("peel", "the next layer lies behind this one", "peel.frag", fill_all, (peel,), "layer"),
+        Pass("peel", "the next layer lies behind this one", Host.PEEL, fill_all, (peel,), Kind.LAYER),
     )
 
 
@@ -94,7 +94,7 @@ def is_present(planning) -> bool:
 
 def draws(tile, p: Pass, instance) -> bool:
     """Whether a pass draws an object: if there are layers, they draw transparent objects, and other passes the rest."""
-    return not tile.plan.facts["layers"] or instance.is_transparent is (p.kind in ("layer", "rest"))
+    return not tile.plan.facts["layers"] or instance.is_transparent is (p.kind in (Kind.LAYER, Kind.REST))
 
 
 def margin(planning) -> int:
@@ -104,20 +104,20 @@ def margin(planning) -> int:
 def parts(planning, p):
     opaque, tested = visibility.DEPTH, (PEELED, visibility.DEPTH)
     opacity = {"varyings": (("flat", "float", "opacity"),)}
-    if p.kind == "layer":
-        if p.host == "visibility.frag":
+    if p.kind == Kind.LAYER:
+        if p.host == Host.VISIBILITY:
             yield Part("transparency", reads=tested)
-        if p.host == "object_space.frag":
+        if p.host == Host.OBJECT_SPACE:
             yield Part("transparency", reads=tested, **opacity)
-        if p.host == "screen_space.frag":
+        if p.host == Host.SCREEN_SPACE:
             yield Part("transparency", reads=(PEELED,), **opacity)
-        if p.host == "depth_bounds.frag":
+        if p.host == Host.DEPTH_BOUNDS:
             yield Part("transparency", reads=(opaque,))
-        if p.host in ("resolve.frag", "layer.frag"):
+        if p.host in (Host.RESOLVE, Host.LAYER):
             yield Part("transparency", reads=(PEELED,))
-    if p.kind == "rest" and p.host in SPLAT_HOSTS:
+    if p.kind == Kind.REST and p.host in SPLAT_HOSTS:
         yield Part("transparency", ("layer",), reads=tested, **opacity)
-    if p.kind == "opaque" and p.host in ("shading.frag", "resolve.frag"):
+    if p.kind == Kind.OPAQUE and p.host in (Host.SHADING, Host.RESOLVE):
         yield Part("transparency", reads=(PEELED, COLOR, COLOR_DEPTH))
 
 

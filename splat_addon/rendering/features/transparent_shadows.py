@@ -9,9 +9,9 @@ need none, because they let light through only beside what they show.
 from __future__ import annotations
 
 from ..plan.graph import Part
+from ..plan.hosts import LIGHTING_HOSTS, Host, Kind
 from ..plan.planning import any_of, count, counted
 from . import shadows, transparency
-from .drawing import LIGHTING_HOSTS
 
 
 def _casting(planning) -> int:
@@ -35,7 +35,7 @@ passes, is_present = counted(
 
 
 def parts(planning, p):
-    if p.host == "visibility.frag" and p.kind == "shadow":
+    if p.host == Host.VISIBILITY and p.kind == Kind.SHADOW:
         yield Part("transparent_shadows", varyings=(("flat", "vec2", "opacity_surface"),), only="splats")
     if p.host in LIGHTING_HOSTS and planning.find(_averaged):
         yield Part("transparent_shadows", choices=(("shadow_taps", "masked"),))

@@ -7,6 +7,7 @@ from collections.abc import Generator
 from dataclasses import replace
 
 from ..plan.graph import Part, Pass, Pause, Texture
+from ..plan.hosts import BLENDED, Host, Kind
 from ..view import Items
 from . import depth_format, hidden_objects, silhouettes
 from .drawing import draw_polygons, draw_splats, storage_samplers
@@ -37,9 +38,9 @@ def own_parts(planning, depth: Texture, has_polygons: bool = True) -> tuple[Part
     )
 
 
-def drawn(name: str, reason: str, own: tuple[Part, ...], planning, kind: str = "opaque") -> Pass:
+def drawn(name: str, reason: str, own: tuple[Part, ...], planning, kind: Kind = Kind.OPAQUE) -> Pass:
     """A pass that finds the nearest surface."""
-    return Pass(name, reason, "visibility.frag", run, own, kind, depth_format.state(planning))
+    return Pass(name, reason, Host.VISIBILITY, run, own, kind, depth_format.state(planning))
 
 
 def passes(planning):
@@ -55,9 +56,9 @@ def passes(planning):
 
 
 def parts(planning, p):
-    if p.host == "screen_space.frag" and p.kind in ("opaque", "layer"):
+    if p.host == Host.SCREEN_SPACE and p.kind in BLENDED:
         yield Part("visibility")
-    if p.host == "visibility.frag" and p.kind in ("opaque", "layer") and planning.method.hides_within:
+    if p.host == Host.VISIBILITY and p.kind in BLENDED and planning.method.hides_within:
         within = planning.method.hides_within
         varyings = (("flat", "vec3", "square"),) if within == "square" else ()
         yield Part(f"{within}_visibility", varyings=varyings, only="splats")
@@ -71,7 +72,7 @@ def run(tile, p: Pass):
     if silhouettes.rows_of(p.depth) > 1:
         # the first of a sample's rows goes through its centre
         by_rows = replace(tile, rise=-(silhouettes.VISIBILITY_ROWS - 1) / target.size[1])
-    polygons = tile.view.polygons if p.kind != "layer" else None
+    polygons = tile.view.polygons if p.kind != Kind.LAYER else None
     for splats in hidden_objects.front_to_back(tile, p, tile.drawn_by(p)):
         yield from draw(by_rows, p, target, splats, polygons)
         polygons = None

@@ -8,9 +8,9 @@ import math
 import numpy as np
 
 from ..plan.graph import Part, Pass, fill_all
+from ..plan.hosts import LIGHTING_HOSTS, Host, Kind
 from ..scene.picture_sun import REACH
 from . import outputs
-from .drawing import LIGHTING_HOSTS
 
 
 def _to_environment(tile) -> np.ndarray:
@@ -55,7 +55,7 @@ def passes(planning):
         if is_shown(planning):
             samples = ("SAMPLES", planning.settings.supersampling)
             own = Part("world", writes=outputs.ALWAYS_WRITTEN, constants=(samples,), called=outputs.CALLED)
-            yield Pass("background", "the world is a picture", "background.frag", fill_all, (own,))
+            yield Pass("background", "the world is a picture", Host.BACKGROUND, fill_all, (own,))
     elif not planning.scene.environment:
         planning.skip("environment", "the world is even")
 
@@ -65,7 +65,7 @@ def is_present(planning) -> bool:
 
 
 def parts(planning, p):
-    if p.kind == "opaque" and p.host in ("shading.frag", "resolve.frag", "background.frag") and is_shown(planning):
+    if p.kind == Kind.OPAQUE and p.host in (Host.SHADING, Host.RESOLVE, Host.BACKGROUND) and is_shown(planning):
         yield _SHOWN
     if p.host in LIGHTING_HOSTS and planning.model.has_world:
         yield _LIGHTS

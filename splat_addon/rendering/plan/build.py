@@ -94,7 +94,7 @@ def _choices(settings: Settings) -> tuple[tuple[str, str], ...]:
 
 def _with_parts(planning: Planning, p: Pass, present: Iterable[Callable[[Planning, Pass], Iterable[Part]]]) -> Pass:
     """A pass with the parts of all features that are present."""
-    if not p.host:
+    if p.host is None:
         return p
     planning.model = lit_splats.model_in(planning, p)
     found = [part for parts in present for part in parts(planning, p)]

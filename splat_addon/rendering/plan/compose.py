@@ -46,7 +46,7 @@ def _shown(made: FramePlan, p: Pass, variants: list[str]) -> str:
     there = {part.only for part in p.parts} - {"", *made.variants}
     if missing := set(variants) - there:
         raise SystemExit(f"{p.name} has no variant {min(missing)}; it has {', '.join(sorted(there)) or 'none'}.")
-    vertex = next((VERTEX[v] for v in variants if v in VERTEX), p.host.replace(".frag", ".vert"))
+    vertex = next((VERTEX[v] for v in variants if v in VERTEX), p.host.vertex)
     if not (FOLDER / "hosts" / f"{vertex}.glsl").exists():
         vertex = "fullscreen.vert"
     texts = composed(made, p, vertex, *(variants or there - set(VERTEX)), origins=True)

@@ -13,6 +13,7 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from ..device.interface import FORMATS
+from .hosts import Host, Kind
 
 #: channels -> GLSL type
 _TYPES = {1: "float", 2: "vec2", 4: "vec4"}
@@ -114,11 +115,10 @@ def fill_all(tile, p: Pass):
 
 class Pass(NamedTuple):
     """name: shown to the user. reason: why the frame needs it. host: its fragment shader, by which features identify
-    it.
+    it, as by kind; None for a pass that has none, and so no parts of other features.
 
-    run: run(tile, pass) -> the target that was drawn into, or a generator that yields `Pause` and returns it. kind:
-    "opaque", "layer", "rest", ..., for features. state: of its pipelines, fields of `PipelineDescription`. adds: draws
-    onto existing contents without clearing.
+    run: run(tile, pass) -> the target that was drawn into, or a generator that yields `Pause` and returns it.
+    state: of its pipelines, fields of `PipelineDescription`. adds: draws onto existing contents without clearing.
     once: once(tile, pass), for a pass that runs once for all tiles, gives a value that its result depends on; as long
         as values are equal, following samples and frames share the result. each: a pass that it runs itself for each
         instance.
@@ -126,10 +126,10 @@ class Pass(NamedTuple):
 
     name: str
     reason: str
-    host: str
+    host: Host | None
     run: Callable[[Any, Pass], Any]
     parts: tuple[Part, ...]
-    kind: str = "opaque"
+    kind: Kind = Kind.OPAQUE
     state: Mapping[str, Any] = MappingProxyType({})
     adds: bool = False
     once: Callable[[Any, Pass], object] | None = None
