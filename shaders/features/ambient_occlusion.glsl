@@ -30,7 +30,7 @@ const int OCCLUSION_STEPS = 8;
 // Cosine between the direction to the viewer and the highest horizon along a direction, at least `lowest`. phase: of
 // the steps, which grow with the distance. Occluders beyond half the distance fade out.
 float horizon_cosine(ivec2 texel, vec3 position, vec3 to_eye, ivec2 along, float reach, float phase, float lowest) {
-  uvec2 size = uvec2(textureSize(occluders, 0));
+  uvec2 size = uvec2(textureSize(sample_depths, 0));
   float highest = lowest, most = reach / length(vec2(along));
   float per_distance = 2.0 / frame.occlusion_distance;
   int last = 0;
@@ -39,7 +39,7 @@ float horizon_cosine(ivec2 texel, vec3 position, vec3 to_eye, ivec2 along, float
     last = max(last + 1, int(share * share * most + 0.5));
     ivec2 at = texel + along * last;
     if (any(greaterThanEqual(uvec2(at), size))) break;  // a negative value is a large unsigned one
-    float depth = texelFetch(occluders, at, 0).r;
+    float depth = texelFetch(sample_depths, at, 0).r;
     if (!(depth > 0.0)) continue;
     vec3 toward = eye_position(at, depth) - position;
     float square = max(dot(toward, toward), 1e-30), per_length = inversesqrt(square);

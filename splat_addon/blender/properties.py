@@ -17,8 +17,11 @@ from bpy.props import (
 )
 
 from ..rendering.methods import METHODS
+from ..rendering.scene.eye_dome import MAX_RADIUS as MAX_EYE_DOME_RADIUS
+from ..rendering.scene.eye_dome import EyeDome
 from ..rendering.scene.lines import MAX_WIDTH, Lines
 from ..rendering.scene.matcap import Matcap
+from ..rendering.scene.numbers import MAX_FACTOR
 from ..rendering.settings import (
     MAX_FILTER_VARIANCE,
     MAX_LAYERS,
@@ -279,6 +282,31 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         soft_max=100.0,
         default=1.0,
     )
+    use_eye_dome: BoolProperty(
+        name="Eye-Dome Lighting",
+        description=(
+            "Darken surfaces whose surroundings rise towards the viewer, with any shading and without any light. It "
+            "shows the shape of scans. Frames take slightly longer"
+        ),
+        default=False,
+    )
+    eye_dome_strength: FloatProperty(
+        name="Strength",
+        description="How much steps in depth darken what lies behind them",
+        min=0.01,
+        max=MAX_FACTOR,
+        soft_max=5.0,
+        default=EyeDome.strength,
+    )
+    eye_dome_radius: FloatProperty(
+        name="Radius",
+        description="How far away the eight places are that each is compared with: the width of dark rims",
+        subtype="PIXEL",
+        min=1.0,
+        max=MAX_EYE_DOME_RADIUS,
+        soft_max=8.0,
+        default=EyeDome.radius,
+    )
     layers: IntProperty(
         name="Layers",
         description=(
@@ -425,6 +453,7 @@ def _settings(scene, **choices) -> Settings:
         detail_tolerance=properties.detail_tolerance,
         shadow_resolution=properties.shadow_resolution,
         ambient_occlusion=properties.ambient_occlusion_distance if properties.use_ambient_occlusion else 0.0,
+        eye_dome=_eye_dome(properties) if properties.use_eye_dome else None,
         layers=properties.layers,
         blends_rest=properties.blends_rest,
         lights_splats=properties.lights_splats,
@@ -440,6 +469,10 @@ def _settings(scene, **choices) -> Settings:
 def _matcap(properties) -> Matcap | None:
     is_read = "matcap" in SHADING_MODELS[properties.shading].tables
     return matcap_of(properties.matcap) if is_read and properties.matcap else None
+
+
+def _eye_dome(properties) -> EyeDome:
+    return EyeDome(properties.eye_dome_strength, properties.eye_dome_radius)
 
 
 def _lines(properties) -> Lines:

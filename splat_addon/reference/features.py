@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from ..rendering.scene import Material
+from ..rendering.scene.eye_dome import EyeDome
 from ..rendering.scene.light import Light
 from ..rendering.scene.lines import Lines
 from ..rendering.settings import OUTPUTS
@@ -71,6 +72,7 @@ def _shading():
             yield row(model.name, "flat, under two lights", together(TWO, shaded))
     for width in (1.5, 4.0):
         yield row(f"lines of {width:g} pixels", "flat", together(flat, settings(lines=Lines(width=width))))
+    yield row("eye-dome lighting", "flat", together(flat, settings(eye_dome=EyeDome())), is_quick=True)
 
 
 def _surfaces():

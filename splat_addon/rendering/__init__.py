@@ -14,6 +14,7 @@ from .renderer import RenderCancelled, Renderer, Shown
 from .scene import Finish, Instance, Material, NormalTexture, PolygonInstance, Scene, SurfaceTexture
 from .scene.camera import Camera, look_at
 from .scene.environment import Environment
+from .scene.eye_dome import EyeDome
 from .scene.lens import Lens
 from .scene.light import Light
 from .scene.lines import Lines
@@ -36,6 +37,7 @@ __all__ = (
     "EquidistantFisheye",
     "Equirectangular",
     "EquisolidFisheye",
+    "EyeDome",
     "Finish",
     "Frame",
     "FramePlan",

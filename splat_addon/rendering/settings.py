@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from .frame import OUTPUTS
 from .methods import get_method
+from .scene.eye_dome import EyeDome
 from .scene.lines import Lines
 from .scene.matcap import Matcap
 from .scene.numbers import MAX_FACTOR, MAX_LENGTH
@@ -57,6 +58,7 @@ class Settings:
     toon_steps: levels of each light in the toon model, at least 2. toon_softness: width of their edges, as a share of a
         level's.
     matcap: what that model looks up. ramp: the same for that model; three even greys unless another is given.
+    eye_dome: darkens surfaces whose surroundings rise towards the viewer, with any shading; None for none.
     lines: drawn along silhouettes and creases, with any shading; None for none.
     supersampling: N for N x N samples per pixel, averaged with a box filter.
     samples: number of pictures that are averaged, each with a different offset in the pixel and a different point on
@@ -103,6 +105,7 @@ class Settings:
     toon_softness: float = 0.1
     matcap: Matcap | None = None
     ramp: Ramp = EVEN_RAMP
+    eye_dome: EyeDome | None = None
     lines: Lines | None = None
     supersampling: int = 1
     samples: int = 1

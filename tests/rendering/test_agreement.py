@@ -20,6 +20,7 @@ from splat_addon.rendering import (
     Camera,
     Environment,
     Equirectangular,
+    EyeDome,
     Finish,
     Instance,
     Lens,
@@ -357,6 +358,7 @@ CASES = [
     *(("transparent_spheres", "mip", {"layers": layers, "blends_rest": layers == 2}) for layers in (2, 8)),
     ("transparent_shadows", "quad", {}),
     ("polygons", "quad", {"ambient_occlusion": 1.0}),
+    ("torus", "quad", {"shading": "flat", "eye_dome": EyeDome()}),
     *(("polygon_shadows", method, {"lights_splats": True}) for method in ("quad", "mip")),
     ("large_lamp_shadows", "quad", {}),
     ("many_finishes", "mip", {}),
@@ -381,7 +383,10 @@ def named(name: str, method: str, options: dict) -> str:
         (
             name,
             method,
-            *(key if key in ("lines", "matcap", "outputs") else f"{value}" for key, value in options.items()),
+            *(
+                key if key in ("eye_dome", "lines", "matcap", "outputs") else f"{value}"
+                for key, value in options.items()
+            ),
         )
     )
 

@@ -183,12 +183,12 @@ def test_where_it_is_not_nothing_is_there_and_the_plan_says_why(method, seen, se
 def test_where_it_is_the_plan_says_so():
     mixed = replace(DISCS, surfels=(*DISCS.surfels, *TRANSPARENT.surfels))
     made = plan(mixed, camera(), replace(SETTINGS, method="quad"))
-    assert [p.name for p in made.passes].count("occluders") == 1
+    assert [p.name for p in made.passes].count("sample_depths") == 1
     assert "transparent layers neither have it nor cause it" in str(made)
     lit = [p for p in made.passes if p.kind == Kind.LAYER and p.host == Host.DEFERRED_LIGHTING]
     assert lit and all("open_share" not in describe(made, p).fragment for p in lit)
     pictured = replace(DISCS, environment=Environment(np.ones((4, 8, 3))))
-    assert "occluders" in plan(pictured, camera(), SETTINGS).textures
+    assert "sample_depths" in plan(pictured, camera(), SETTINGS).textures
 
 
 @pytest.mark.parametrize("distance", [-1.0, float("nan"), float("inf")])

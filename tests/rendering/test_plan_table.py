@@ -9,6 +9,7 @@ import pytest
 from splat_addon.rendering import (
     Camera,
     Environment,
+    EyeDome,
     Finish,
     Instance,
     Light,
@@ -156,6 +157,10 @@ TABLE = {
         "-normal_coverage identity edge_depth depth_bounds", "", (),
     ),
     "whose it is": (PLAIN, {"outputs": ("object_index",)}, PASSES, "-normal_coverage identity", "", ()),
+    "eye-dome lighting": (
+        PLAIN, {"eye_dome": EyeDome()}, ("visibility", "attributes", "sample_depths", "shading"),
+        "sample_depths", "", ("eye-dome lighting",),
+    ),
     "lines": (PLAIN, {"lines": Lines()}, ("visibility", "attributes", "lines", "shading"), "lines", "", ()),
     "overdraw": (PLAIN, {"shading": "overdraw"}, PASSES, "gbuffer_overdraw", "-brdf_table", ()),
     "mip": (

@@ -100,6 +100,22 @@ GERMAN = {
         "Alle Eigenschaften, genau; andere Programme lesen die Positionen, Normalen und Farben"
     ),
     "Ambient Occlusion": "Umgebungsverdeckung",
+    "Eye-Dome Lighting": "Eye-Dome-Beleuchtung",
+    "Radius": "Radius",
+    "Strength": "Stärke",
+    (
+        "Darken surfaces whose surroundings rise towards the viewer, with any shading and without any light. It shows "
+        "the shape of scans. Frames take slightly longer"
+    ): (
+        "Flächen abdunkeln, deren Umgebung sich zum Betrachter hin erhebt, mit jeder Schattierung und ohne Licht. "
+        "Zeigt die Form von Scans. Einzelbilder dauern etwas länger"
+    ),
+    "How much steps in depth darken what lies behind them": (
+        "Wie sehr Stufen in der Tiefe abdunkeln, was hinter ihnen liegt"
+    ),
+    "How far away the eight places are that each is compared with: the width of dark rims": (
+        "Wie weit die acht Stellen entfernt sind, mit denen jede verglichen wird: die Breite dunkler Ränder"
+    ),
     "An image of a lit ball that fills the frame. A multilayer file shows its first layer": (
         "Ein Bild einer beleuchteten Kugel, die das Bild ausfüllt. Von einer mehrschichtigen Datei wird die "
         "erste Schicht gezeigt"

@@ -190,6 +190,19 @@ class RENDER_PT_surfel_ambient_occlusion(_RenderPanel, bpy.types.Panel):
         super().draw(context)
 
 
+class RENDER_PT_surfel_eye_dome(_RenderPanel, bpy.types.Panel):
+    bl_label = "Eye-Dome Lighting"
+    bl_options = frozenset({"DEFAULT_CLOSED"})
+    properties = ("eye_dome_strength", "eye_dome_radius")
+
+    def draw_header(self, context):
+        self.layout.prop(getattr(context.scene, RENDER_SETTINGS), "use_eye_dome", text="")
+
+    def draw(self, context):
+        self.layout.active = getattr(context.scene, RENDER_SETTINGS).use_eye_dome
+        super().draw(context)
+
+
 class RENDER_PT_surfel_transparency(_RenderPanel, bpy.types.Panel):
     bl_label = "Transparency"
     bl_options = frozenset({"DEFAULT_CLOSED"})
@@ -277,6 +290,7 @@ _register_classes, _unregister_classes = register_classes_factory(
         RENDER_PT_surfel_motion_blur,
         RENDER_PT_surfel_shadows,
         RENDER_PT_surfel_ambient_occlusion,
+        RENDER_PT_surfel_eye_dome,
         RENDER_PT_surfel_transparency,
         RENDER_PT_surfel_film,
         RENDER_PT_surfel_papers,

@@ -93,11 +93,12 @@ def panorama_frame(panorama: Panorama, number: int, settings: Settings, draw: Dr
 
 def _in_pixels_of_faces(settings: Settings) -> Settings:
     """The same settings, with lengths in pixels converted to pixels of a face."""
-    lines = settings.lines
-    if lines is None:
-        return settings
-    wider = replace(lines, width=lines.width * DENSITY, depth_threshold=lines.depth_threshold * DENSITY)
-    return replace(settings, lines=wider)
+    lines, dome = settings.lines, settings.eye_dome
+    if lines is not None:
+        lines = replace(lines, width=lines.width * DENSITY, depth_threshold=lines.depth_threshold * DENSITY)
+    if dome is not None:
+        dome = replace(dome, radius=dome.radius * DENSITY)
+    return replace(settings, lines=lines, eye_dome=dome)
 
 
 def _nothing(name: str, size: tuple[int, int], shape: tuple[int, ...]) -> np.ndarray:

@@ -3,16 +3,14 @@
 
 from __future__ import annotations
 
-from ..plan.graph import Part, Pass, Texture, fill_all
-from ..plan.hosts import LIT_HOSTS, Host, Kind
+from ..plan.graph import Part
+from ..plan.hosts import LIT_HOSTS, Kind
 from ..plan.planning import any_of
 from ..plan.tiles import tile_edge
-from . import gbuffer, polygons
+from . import sample_depths
 
 #: Search distance for occluders in a picture that is drawn in tiles, as a fraction of a tile's edge.
 TILE_SHARE = 1 / 8
-
-DEPTHS = Texture("occluders", "R32F")
 
 
 def missing(planning) -> str:
@@ -50,31 +48,24 @@ VALUES = {
 
 
 def passes(planning):
-    """The pass that stores the depths to search."""
-    if not planning.shown:
-        return
-    if why := planning.find(missing):
-        planning.skip("ambient occlusion", why)
-        return
-    yield _depths(planning)
+    """None of its own: what it reads is a pass of `sample_depths`."""
+    if planning.shown:
+        if why := planning.find(missing):
+            planning.skip("ambient occlusion", why)
+        else:
+            planning.facts["occlusion_margin"] = margin(planning)
+            planning.has("ambient occlusion", _why(planning))
+    return ()
 
 
-def _depths(planning) -> Pass:
+def _why(planning) -> str:
     settings, pixels = planning.settings, margin(planning)
-    planning.facts["occlusion_margin"] = pixels
     why = f"surfaces within {settings.ambient_occlusion:g} keep the world's light from one another"
     if pixels:
         why += f"; the picture is drawn in tiles, so they are looked for up to {pixels} pixels away"
     if any_of(lambda instance: instance.is_transparent, planning.surfels):
         why += "; transparent layers neither have it nor cause it"
-    own = Part(
-        "ambient_occlusion",
-        writes=(DEPTHS,),
-        constants=(("MEAN_OF", settings.multisampling),),
-        choices=(("samples", "mean" if settings.multisampling else "each"),),
-    )
-    sums = gbuffer.depth_parts(planning, Kind.OPAQUE, reads=(gbuffer.COLOR, gbuffer.NORMAL))
-    return Pass("occluders", why, Host.OCCLUDERS, fill_all, (own, sums, *polygons.joined(planning)))
+    return why
 
 
 def is_present(planning) -> bool:
@@ -83,4 +74,4 @@ def is_present(planning) -> bool:
 
 def parts(planning, p):
     if p.kind == Kind.OPAQUE and p.host in LIT_HOSTS:
-        yield Part("ambient_occlusion", reads=(DEPTHS,))
+        yield Part("ambient_occlusion", reads=(sample_depths.DEPTHS,))

@@ -20,7 +20,7 @@ class Host(StrEnum):
     POINT_SPRITE = "point_sprite.frag"
     LIT_SPLATS = "lit_splats.frag"
     POLYGONS = "polygons.frag"
-    OCCLUDERS = "occluders.frag"
+    SAMPLE_DEPTHS = "sample_depths.frag"
     LINES = "lines.frag"
     SHADING = "shading.frag"
     DEFERRED_LIGHTING = "deferred_lighting.frag"

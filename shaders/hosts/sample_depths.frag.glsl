@@ -6,5 +6,5 @@
 #parts
 void main() {
   MeanSurface mean = mean_surface(ivec2(gl_FragCoord.xy), 0);
-  occluders = mean.coverage > 0.0 ? mean.depth : 0.0;
+  sample_depths = mean.coverage > 0.0 ? mean.depth : 0.0;
 }
