@@ -158,6 +158,14 @@ def test_pieces_have_the_attributes_and_the_area_of_their_triangle():
     assert (lengths < REACH * np.linalg.norm(places - FRAME[:3, 3], axis=2).min(axis=1)).all()
 
 
+def test_a_far_reaching_triangle_without_area_is_left_out():
+    corners = np.array([(-1.0, 0.5, 0.0), (-1.0, 0.5, 0.0), (1e6, 0.5, 0.0)])
+    shape, camera = replace(make_polygons(corners, [(0, 1, 2)]), uvs=[(0, 0), (1, 0), (0, 1)]), CAMERAS["perspective"]
+    assert reaching(PolygonInstance(shape), camera).tolist() == [0]
+    ground = floor(3)
+    assert NearAndFar().resolved(Scene(polygons=[PolygonInstance(shape), ground]), camera).polygons == (ground,)
+
+
 def test_convex_polygons_are_cut_at_planes():
     square = np.array([[(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]], float)
     half = kept(square, square[..., 0] + square[..., 1] - 0.5)

@@ -91,3 +91,12 @@ def test_every_odd_number_is_taken_or_refused_with_a_sentence(plain):
                 else:
                     assert odd not in (*NEVER, 1e300, -1e300) or field.name == "rotation", (field.name, value)
     assert tried >= len(NEVER)
+
+
+def test_a_camera_without_room_is_refused_and_a_sheared_one_is_not():
+    flat = np.array([(-1.0, -1, 1, 0), (0, 0, 0, -4), (4e-46, -2e-45, -4e-46, 0), (0, 0, 0, 1)])
+    with pytest.raises(ValueError, match="axes in a plane"):
+        Camera(flat, (-1, 1, -1, 1), (8, 8))
+    sheared = np.eye(4)
+    sheared[0, 1] = 100.0
+    assert np.isfinite(Camera(sheared, (-1, 1, -1, 1), (8, 8)).world_to_view()).all()

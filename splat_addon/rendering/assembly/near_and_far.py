@@ -57,7 +57,8 @@ class NearAndFar:
             return self._of(placed)
         far = replace(placed, shape=pieces(placed, camera, rows), reaches=True)
         near = replace(placed, shape=self._others(placed, rows))
-        return (*self._of(near), far) if len(near.shape) else (far,)
+        near_parts = self._of(near) if len(near.shape) else ()
+        return (*near_parts, far) if len(far.shape) else near_parts  # triangles without area have no pieces
 
     def _of(self, placed: Placed) -> tuple[Placed, ...]:
         parts = self._parts(placed)

@@ -90,7 +90,7 @@ class Camera(Windowed):
         return same_values and np.array_equal(self.matrix_world, other.matrix_world)
 
     def world_to_view(self) -> np.ndarray:
-        """(4, 4) float64: the inverse of `matrix_world`, whose rotation is orthonormal."""
+        """(4, 4) float64: the inverse of `matrix_world`, which may be sheared."""
         inverse = np.eye(4)
         inverse[:3, :3] = np.linalg.inv(self.matrix_world[:3, :3])
         inverse[:3, 3] = -inverse[:3, :3] @ self.matrix_world[:3, 3]

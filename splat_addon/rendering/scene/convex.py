@@ -29,7 +29,9 @@ def kept(polygons: np.ndarray, distances: np.ndarray) -> np.ndarray:
 
 def divided(polygons: np.ndarray, distances: np.ndarray) -> np.ndarray:
     """The parts of polygons on both sides of planes."""
-    sides = [part for part in (kept(polygons, distances), kept(polygons, -distances)) if len(part)]
+    crosses = (distances.min(axis=1) < 0) & (distances.max(axis=1) > 0)
+    cut, across = polygons[crosses], distances[crosses]
+    sides = [part for part in (polygons[~crosses], kept(cut, across), kept(cut, -across)) if len(part)]
     if not sides:
         return polygons[:0]
     most = max(part.shape[1] for part in sides)

@@ -181,7 +181,7 @@ def _varied(shape: Polygons, of: np.ndarray, shares: np.ndarray, origin: np.ndar
     rows = of[:, None] + np.arange(3)
 
     def mixed(values: np.ndarray) -> np.ndarray:
-        flat = values[rows].astype(np.float64).reshape(len(rows), 3, -1)
+        flat = values[rows].astype(np.float64).reshape(len(rows), 3, math.prod(values.shape[1:]))
         return np.einsum("nks,nsc->nkc", shares, flat).reshape(-1, *values.shape[1:])
 
     names = ("normals", "colors", "roughness", "metallic", "emission", "uvs", "bumps")

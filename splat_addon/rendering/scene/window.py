@@ -12,6 +12,9 @@ from .numbers import MAX_LENGTH, MIN_LENGTH, check_lengths, check_range
 #: Maximum pixels along an edge of a picture, which is drawn in tiles; more would be too many tiles.
 MAX_EDGE = 1 << 17
 
+#: Of a camera's axes of unit length, the least singular value: float32 has seven digits.
+_LEAST_ROOM = 1e-6
+
 
 class Windowed:
     """A frozen dataclass with a window (left, right, bottom, top), a size (width, height) in pixels, a matrix_world
@@ -60,5 +63,7 @@ def _rigid(matrix_world) -> np.ndarray:
     if not (lengths > 0).all():
         raise ValueError("The camera's matrix_world has a zero axis; set the camera's scale to 1.")
     matrix[:3, :3] /= lengths
+    if not np.linalg.svd(matrix[:3, :3], compute_uv=False)[2] > _LEAST_ROOM:
+        raise ValueError("The camera's matrix_world has all its axes in a plane; set the scale of its parents to 1.")
     matrix.flags.writeable = False
     return matrix
