@@ -20,12 +20,8 @@ vec3 shade(vec3 position, vec3 normal, vec3 base, vec3 material) {
 }
 
 #part lights
-#include "hosts/lights.glsl"
+#include "lib/diffuse_lights.glsl"
 
 void lights_lit(inout vec3 sum, vec3 position, vec3 normal) {
-  int count = int(frame.light_count);
-  for (int i = 0; i < count; i++) {
-    Incident light = incident(i, position, normal);
-    sum += light.irradiance * max(dot(normal, light.to_light), 0.0) / PI;
-  }
+  sum += diffuse_light(position, normal);
 }

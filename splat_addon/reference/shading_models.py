@@ -24,6 +24,13 @@ def _flat(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, setting
     return surface.color
 
 
+def _captured(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, settings: Settings) -> np.ndarray:
+    light = np.ones_like(surface.color)
+    for one in _lighting(surface, grid, scene, camera, settings)[1]:
+        light = light + one.irradiance * np.maximum(dot(surface.normal, one.to_light), 0)[:, None] / np.pi
+    return surface.color * light
+
+
 def _normals(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, settings: Settings) -> np.ndarray:
     return surface.normal @ camera.matrix_world[:3, :3].T / 2 + 0.5
 
@@ -143,6 +150,7 @@ DIAGNOSTIC = ("overdraw", "weight")
 #: name of a shading model -> its twin
 SHADERS = {
     "principled": _principled,
+    "captured": _captured,
     "phong": _phong,
     "toon": _toon,
     "ramp": _ramp,

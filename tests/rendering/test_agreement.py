@@ -341,6 +341,7 @@ CASES = [
     *(("polygons", method, {}) for method in ("ewa", "sprites_unfiltered")),
     *(("torus", "mip", {"shading": shading}) for shading in UNLIT if shading not in ("flat", "matcap")),
     ("torus", "mip", {"shading": "matcap", "matcap": BALL}),
+    ("torus", "quad", {"shading": "captured", "ambient_occlusion": 1.0}),
     *(("shadows", "quad", {"shading": shading}) for shading in ("phong", "toon", "ramp")),
     ("torus", "mip", {"shading": "flat", "lines": Lines(width=2.0)}),
     ("solid_sphere", "quad", {"shading": "flat", "lines": Lines(shallow_angle=0.4)}),

@@ -102,6 +102,20 @@ def test_phong_is_lambert_and_blinns_lobe(roughness, metallic, render):
     assert seen == pytest.approx(lit + (diffuse + specular) * (0.1, 0.2, 0.3), rel=2e-3)
 
 
+@pytest.mark.parametrize("world", [(0, 0, 0), (3, 2, 1)])
+def test_a_captured_color_needs_no_light_and_lights_add_theirs(world, render):
+    """It does not look at the world, and ambient occlusion darkens it even where that is dark."""
+    settings = Settings(method="quad", shading="captured")
+    assert center(render(Scene([floor()], world=world), ABOVE, settings)) == pytest.approx(COLOR, rel=1e-5)
+    lit = Scene([floor()], [from_above(0.5)], world=world)
+    assert center(render(lit, ABOVE, settings)) == pytest.approx(COLOR * (1 + 2 * 0.5 / math.pi), rel=1e-5)
+    beside = np.eye(4)
+    beside[0, 3] = 2.3  # of a floor that reaches 2.2 to both sides
+    groove = Scene([Instance(floor()), Instance(floor(0.5), beside)], world=world)
+    occluded = render(groove, ABOVE, replace(settings, ambient_occlusion=2.0))
+    assert (center(occluded) < 0.95 * COLOR).all()
+
+
 @pytest.mark.parametrize("steps", [2, 3, 5])
 def test_toon_light_comes_in_even_levels(steps, render):
     levels = set()

@@ -826,6 +826,14 @@ GERMAN = {
         "Die eigene Farbe der Surfels, multipliziert mit dem Bild einer Kugel, nachgeschlagen, wo die Kugel in "
         "dieselbe Richtung zeigt (Sloan et al. 2001)"
     ),
+    "Captured Color": "Aufgenommene Farbe",
+    (
+        "The surfels' own colour without any light, as a scan captured it; Ambient Occlusion darkens it, and lights "
+        "add diffuse light"
+    ): (
+        "Die Farbe der Surfels selbst ohne Licht, wie ein Scan sie aufgenommen hat; Umgebungsverdeckung dunkelt sie "
+        "ab, und Lampen fügen diffuses Licht hinzu"
+    ),
     "The surfels' own colour, unlit": ("Die Farbe der Surfels selbst, unbeleuchtet"),
     ("The sum of the splats' weights in each sample: 1/16 blue, 1/4 cyan, 1 green, 4 yellow, 16 and more red"): (
         "Die Summe der Gewichte der Splats in jedem Sample: 1/16 blau, 1/4 türkis, 1 grün, 4 gelb, 16 und mehr rot"

@@ -20,9 +20,9 @@ def missing(planning) -> str:
         return "its distance is 0"
     if planning.settings.lights_splats:
         return "splats are lit one by one"
-    if not planning.model.has_world:
+    if not (planning.model.has_world or planning.model.world_light):
         return f"{planning.model.name} shading does not look at the world's light"
-    if not any(scene.world):
+    if planning.model.has_world and not any(scene.world):
         return "the world is dark"
     if not scene.polygons and not any_of(lambda instance: not instance.is_transparent, planning.surfels):
         return "transparent layers have none, and nothing is opaque"

@@ -14,6 +14,7 @@ from ..features import CHECKS, MARGINS, PARTS, PASSES, READ_BACK, depth_format, 
 from ..scene import Scene
 from ..scene.camera import Camera
 from ..settings import Settings
+from ..shading_models import get_shading_model
 from ..shadows.receivers import Viewers
 from ..upload.storages import get_storage
 from .frame_plan import FramePlan
@@ -80,12 +81,14 @@ def plan(
 
 def _choices(settings: Settings) -> tuple[tuple[str, str], ...]:
     """Which file each name in the paths of shaders stands for."""
+    world_light = get_shading_model(settings.shading).world_light
     has_mean = settings.multisampling and not settings.sample_shading
     return (
         ("method", settings.method),
         ("storage", get_storage(settings.storage).name),
         ("shading", settings.shading),
         ("sum_format", settings.sum_format),
+        *((("world_light", world_light),) if world_light else ()),
         ("samples", "mean" if has_mean else "each"),
         ("sides", "alike" if settings.as_printed else "told_apart"),
         ("rest_opacity", "printed" if settings.as_printed else "surfaces"),

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a surface shows of itself and of its light: one entry here, one GLSL file and one float64 twin each."""
 
-from . import depth, flat, matcap, normals, overdraw, phong, principled, ramp, toon, weight
+from . import captured, depth, flat, matcap, normals, overdraw, phong, principled, ramp, toon, weight
 from .model import ShadingModel
 
 #: in the order in which users are shown them
 SHADING_MODELS = {
     module.MODEL.name: module.MODEL
-    for module in (principled, phong, toon, ramp, flat, normals, depth, matcap, overdraw, weight)
+    for module in (principled, captured, phong, toon, ramp, flat, normals, depth, matcap, overdraw, weight)
 }
 
 

@@ -19,6 +19,7 @@ class ShadingModel:
     has_material: it uses roughness, metallic, reflectance and emission.
     has_finish: it uses what else a surface has (`scene.finish`).
     has_world: it uses the light of the world.
+    world_light: the file in shaders/lib/world_light of the light from all around that it has instead; "" if none.
     tables: sampler -> the texture for a tile that its file reads beside the sums.
     values: name -> (type, value for a tile) that its file reads from the frame's block.
     sums: textures that are summed for it, and for an output of that name.
@@ -34,6 +35,7 @@ class ShadingModel:
     has_material: bool = False
     has_finish: bool = False
     has_world: bool = False
+    world_light: str = ""
     tables: Mapping[str, Callable] = field(default_factory=dict)
     values: Mapping[str, tuple[str, Callable]] = field(default_factory=dict)
     sums: tuple[str, ...] = ()
