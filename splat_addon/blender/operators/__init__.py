@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from . import (
     export_ply,
-    import_ply,
+    import_file,
     render_preset,
     show_surfels,
     store_surfels,
@@ -20,7 +20,7 @@ MODULES = (
     update_surfels,
     store_surfels,
     export_ply,
-    import_ply,
+    import_file,
     render_preset,
     show_surfels,
 )

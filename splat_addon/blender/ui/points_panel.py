@@ -7,7 +7,7 @@ import bpy
 
 from ..doors import register_classes_factory
 from ..geometry.scene_offset import scene_offset, shown
-from ..ids import EXPORT_PLY, IMPORT_PLY, POINTS_PANEL, SIDEBAR_TAB, SURFELS_FROM_POINTS
+from ..ids import EXPORT_PLY, IMPORT_FILE, POINTS_PANEL, SIDEBAR_TAB, SURFELS_FROM_POINTS
 from ..operators.surfels_from_points import selected_points
 from ..spoken import said
 from .wrapped_text import write
@@ -29,7 +29,7 @@ class VIEW3D_PT_surfels_from_points(bpy.types.Panel):
         row = self.layout.row(align=True)
         # "Invoke" asks for the file; a sidebar's own way would run at once.
         row.operator_context = "INVOKE_DEFAULT"
-        row.operator(IMPORT_PLY, icon="IMPORT")
+        row.operator(IMPORT_FILE, icon="IMPORT")
         row.operator(EXPORT_PLY, icon="EXPORT")
         offset = scene_offset(context.scene)
         if offset.any():

@@ -27,7 +27,7 @@ from ..conversion.surfel_objects import active_collection, add_object_of, select
 from ..geometry.attributes import offset_of, read_surfels, set_offset
 from ..geometry.scene_offset import taken_from
 from ..geometry.surfel_files import keep_coarsest, relative_path
-from ..ids import IMPORT_PLY
+from ..ids import IMPORT_FILE
 from ..spoken import said
 from .file_paths import absolute, file_sentence, path_property
 from .menu_entry import with_menu_entry
@@ -37,11 +37,11 @@ from .modal_work import ModalWork, Writing
 _COARSE = 0.1
 
 
-class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ModalWork, ImportHelper, bpy.types.Operator):
+class IMPORT_SCENE_OT_surfels(PointsProperties, ModalWork, ImportHelper, bpy.types.Operator):
     """Read surfels from a file: one written by this extension, Gaussian splats, or a scan; what it is, its contents \
 tell"""
 
-    bl_idname = IMPORT_PLY
+    bl_idname = IMPORT_FILE
     bl_label = "Import Surfels"
     bl_options = {"REGISTER", "UNDO", "PRESET"}  # noqa: RUF012 - Blender reads a set
 
@@ -79,11 +79,11 @@ tell"""
         self.layout.use_property_decorate = False
         for name in ("keeps_in_file", "float_colors"):
             self.layout.prop(self, name)
-        header, body = self.layout.panel("surfels_ply_gaussians")
+        header, body = self.layout.panel("surfels_import_gaussians")
         header.label(text="Gaussian Splats")
         if body:
             draw_gaussian_properties(body, self)
-        header, body = self.layout.panel("surfels_ply_points")
+        header, body = self.layout.panel("surfels_import_points")
         header.label(text="Points")
         if body:
             draw_points_properties(body, self)
@@ -186,16 +186,16 @@ class Keeping(Writing):
 
 
 def draw_menu_entry(menu, context):
-    menu.layout.operator(IMPORT_PLY, text="Surfels and Scans (.ply, .las, ...)")
+    menu.layout.operator(IMPORT_FILE, text="Surfels and Scans (.ply, .las, ...)")
 
 
-class IO_FH_surfels_ply(bpy.types.FileHandler):
+class IO_FH_surfels(bpy.types.FileHandler):
     """Handles files dropped on the 3D view or the Outliner; Blender asks which importer to use if its own accepts them
     too."""
 
-    bl_idname = "IO_FH_surfels_ply"
+    bl_idname = "IO_FH_surfels"
     bl_label = "Surfels and Scans"
-    bl_import_operator = IMPORT_PLY
+    bl_import_operator = IMPORT_FILE
     bl_file_extensions = ";".join((*SUFFIXES, SUFFIX))
 
     @classmethod
@@ -204,5 +204,5 @@ class IO_FH_surfels_ply(bpy.types.FileHandler):
 
 
 register, unregister = with_menu_entry(
-    IMPORT_SCENE_OT_surfels_ply, bpy.types.TOPBAR_MT_file_import, draw_menu_entry, (IO_FH_surfels_ply,)
+    IMPORT_SCENE_OT_surfels, bpy.types.TOPBAR_MT_file_import, draw_menu_entry, (IO_FH_surfels,)
 )
