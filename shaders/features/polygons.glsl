@@ -45,5 +45,5 @@ void polygons_join(inout MeanSurface mean, ivec2 texel, int tap) {
   }
   mean.polygon = mean.weight > 0.0 ? polygon_share(mean, normal.xyz, normal.w) : 1.0;
   mean.depth = mix(mean.depth, normal.w, mean.polygon);
-  blend_with_polygon(mean, color.rgb, normal.xyz);
+  blend_with_polygon(mean, color.rgb, normal);
 }

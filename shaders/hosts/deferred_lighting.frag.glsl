@@ -14,7 +14,7 @@ void main() {
   MeanSurface mean = mean_surface(texel, 0);
   #hook cut(mean, texel)
   if (mean.coverage > 0.0) {
-    Shaded here = shaded_sample(mean, texel, 0);
+    Shaded here = shaded_surfaces(mean, texel, 0);
     shaded = vec4(here.color, 1.0) * here.coverage;
     surface = vec4(here.normal, mean.depth);
     #hook sign(mean)

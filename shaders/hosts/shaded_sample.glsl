@@ -38,3 +38,5 @@ Shaded shaded_sample(MeanSurface mean, ivec2 texel, int tap) {
   #hook finish(s)
   return s;
 }
+
+#include "lib/polygon_light/{polygon_light}.glsl"

@@ -28,7 +28,7 @@ void main() {
         #hook cut(mean, texel, tap, is_cut)
         if (is_cut) continue;
         if (mean.coverage > 0.0) {
-          Shaded here = shaded_sample(mean, texel, tap);
+          Shaded here = shaded_surfaces(mean, texel, tap);
           coverage = here.coverage;
           color_total += vec4(here.color, 1.0) * (coverage * through);
           normal_total += vec4(is_first ? here.normal : vec3(0.0), through) * coverage;

@@ -7,6 +7,7 @@ Scene -> `splats` (eye space) -> in tiles: `rays` (visibility, weighted averages
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -95,8 +96,13 @@ def _tiles(width: int, height: int, samples: int, margin: int):
             yield x, y, min(side, width - x), min(side, height - y)
 
 
-def shaded_rays(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, settings: Settings) -> np.ndarray:
-    """(rows, columns, 8 or more): premultiplied rgba, eye-space normal, coverage and more outputs of every ray."""
+def shaded_rays(
+    surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, settings: Settings, lit: np.ndarray | None = None
+) -> np.ndarray:
+    """(rows, columns, 8 or more): premultiplied rgba, eye-space normal, coverage and more outputs of every ray.
+
+    lit: (n, 3) what the surface shows, if it is known.
+    """
     more = [OUTPUTS[name][1](surface, grid, scene, camera, settings) for name in _more_outputs(settings)]
     rays = np.zeros((grid.count, 8 + sum(values.shape[1] for values in more)))
     if not settings.transparent_film:
@@ -105,7 +111,7 @@ def shaded_rays(surface: Surface, grid: RayGrid, scene: Scene, camera: Camera, s
     if "shadow" in settings.outputs:
         rays[:, _columns(settings)["shadow"]] = 1  # beside all surfaces
     hit = surface.rays
-    rays[hit, :3] = SHADERS[settings.shading](surface, grid, scene, camera, settings)
+    rays[hit, :3] = SHADERS[settings.shading](surface, grid, scene, camera, settings) if lit is None else lit
     rays[hit, 3] = rays[hit, 7] = 1
     rays[hit, 4:7] = surface.normal
     rays[hit, 8:] = np.concatenate([np.zeros((len(hit), 0)), *more], axis=1)
@@ -119,8 +125,8 @@ def _layered_rays(splats: Splats, bounds, grid: RayGrid, scene: Scene, camera: C
     differ from the settings where splats are lit already.
     """
     groups = _opaque_and_transparent(splats, bounds, settings)
-    opaque, (surface, limit) = groups[0], _opaque_surface(*groups[0], grid, scene, camera, asked_for)
-    rays, depths = shaded_rays(surface, grid, scene, camera, settings), np.full(grid.count, np.inf)
+    opaque, (surface, limit, lit) = groups[0], _opaque_surface(*groups[0], grid, scene, camera, asked_for)
+    rays, depths = shaded_rays(surface, grid, scene, camera, settings, lit), np.full(grid.count, np.inf)
     depths[surface.rays] = surface.depth
     if not len(groups[1][0]) and not splats.is_holdout.any():
         return rays, depths
@@ -145,17 +151,23 @@ def _layered_rays(splats: Splats, bounds, grid: RayGrid, scene: Scene, camera: C
 
 
 def _opaque_surface(splats: Splats, bounds, grid: RayGrid, scene: Scene, camera: Camera, asked_for: Settings):
-    """What every ray sees of opaque splats and polygons, and the depth beyond which polygons hide everything."""
+    """What every ray sees of opaque splats and polygons, the depth beyond which polygons hide everything, and (n, 3)
+    what the surface shows where both are lit before they are blended."""
     epsilon = asked_for.epsilon
     if not scene.polygons:
-        return visible_surface(splats, bounds, grid, epsilon), np.inf
+        return visible_surface(splats, bounds, grid, epsilon), np.inf, None
     hits = polygon_hits(scene, camera, grid, epsilon, asked_for.epsilon_length)
     limit = hits.depth + hits.overlap / np.linalg.norm(grid.rays(np.arange(grid.count))[1], axis=1)
     surface = visible_surface(splats, bounds, grid, epsilon, limit)
+    how = {"same_surface": -2.0} if asked_for.as_printed else {}
+    blended = partial(joined, contact=contact(scene, epsilon), **how)
     if asked_for.lights_splats:
-        hits = lit_polygons(hits, grid, scene, camera, asked_for)
-    any_normals = (-2.0,) if asked_for.as_printed else ()
-    return joined(surface, hits, contact(scene, epsilon), *any_normals), limit
+        return blended(surface, lit_polygons(hits, grid, scene, camera, asked_for)), limit, None
+    if not asked_for.as_printed:
+        return blended(surface, hits), limit, None
+    lit = replace(surface, color=SHADERS[asked_for.shading](surface, grid, scene, camera, asked_for))
+    shown = blended(lit, lit_polygons(hits, grid, scene, camera, asked_for)).color
+    return blended(surface, hits), limit, shown
 
 
 def _opaque_and_transparent(splats: Splats, bounds, settings: Settings):

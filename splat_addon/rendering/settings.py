@@ -91,9 +91,9 @@ class Settings:
     culls_backs: skip splats that face away, also for open surfaces (Botsch and Kobbelt 2003, section 4).
     as_printed: follow the papers where this project has rules of its own. Backs are drawn as fronts, where else they
         weigh little beside one; the last transparent layer hides as one surface does, not as all that it holds; EWA's
-        filter has variance 1; splats have neither blend depths nor smaller weights where they are large; below the edge
-        threshold a pixel is as opaque as its weights sum to; lit splats are blended with lit polygons whichever way
-        both face.
+        filter has variance 1; splats have neither blend depths nor smaller weights where they are large; normal fields
+        are whole; below the edge threshold a pixel is as opaque as its weights sum to; splats and polygons are lit
+        apart, and their colours blended, whichever way both face.
     storage: the format of surfels on the device, a name in `upload.storages`.
     sum_format: of the sums of colour and material, a name in `SUM_FORMATS`.
     profile: wait for the device after each pass, so that the frame's statistics contain the time of each.

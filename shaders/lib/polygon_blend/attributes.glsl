@@ -4,7 +4,7 @@
 void keep_splats(MeanSurface mean) {
 }
 
-void blend_with_polygon(inout MeanSurface mean, vec3 color, vec3 normal) {
+void blend_with_polygon(inout MeanSurface mean, vec3 color, vec4 normal) {
   mean.color = mix(mean.color, color, mean.polygon);
-  mean.normal = mix(mean.normal, normal, mean.polygon);
+  mean.normal = mix(mean.normal, normal.xyz, mean.polygon);
 }

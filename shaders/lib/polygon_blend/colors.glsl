@@ -12,11 +12,11 @@ void keep_splats(MeanSurface mean) {
 }
 
 // Leaves the polygon alone, if it shows at all.
-void blend_with_polygon(inout MeanSurface mean, vec3 color, vec3 normal) {
+void blend_with_polygon(inout MeanSurface mean, vec3 color, vec4 normal) {
   if (!(mean.polygon > 0.0)) return;
   splats_share = 1.0 - mean.polygon;
-  blended_normal = mix(mean.normal, normal, mean.polygon);
+  blended_normal = mix(mean.normal, normal.xyz, mean.polygon);
   mean.color = color;
-  mean.normal = normal;
+  mean.normal = normal.xyz;
   mean.polygon = 1.0;
 }

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..plan.graph import Part, Pass, Texture
 from ..plan.hosts import LIT_HOSTS, Host, Kind
-from . import depth_format, finish, lights, materials, shadows
+from . import depth_format, finish, lights, lit_splats, materials, shadows
 from .drawing import draw_polygons
 
 NAMES = ("polygons", "polygon_plane", "polygon_material")
@@ -54,9 +54,12 @@ def is_present(planning) -> bool:
 def parts(planning, p):
     if p.host == Host.POLYGONS:
         yield from _drawn(planning)
-    if p.kind == Kind.OPAQUE and p.host in (*LIT_HOSTS, Host.LINES):
+    if p.kind == Kind.OPAQUE and p.host == Host.LINES:
         yield from joined(planning)
     if p.kind == Kind.OPAQUE and p.host in LIT_HOSTS:
+        # The paper blends what it has lit, by its own words a little worse than attributes.
+        apart = planning.settings.as_printed and not planning.find(lit_splats.wanted)
+        yield from joined(planning, (("polygon_blend", "apart"), ("polygon_light", "apart")) if apart else ())
         differ, glow = materials.differ(planning)
         if differ or lights.are_linked(planning):
             yield Part("polygon_material", reads=(MATERIAL,))
@@ -68,12 +71,12 @@ def parts(planning, p):
             yield Part("polygon_plane", reads=(PLANE,))
 
 
-def joined(planning):
-    """The parts that blend polygons with the splats' means."""
+def joined(planning, how: tuple[tuple[str, str], ...] = ()):
+    """The parts that blend polygons with the splats' means. how: further choices."""
     if planning.scene.polygons:
         share = "known" if planning.method.spreads else "compared"
         same = (("SAME_SURFACE", repr(ANY_SURFACE if planning.settings.as_printed else SAME_SURFACE)),)
-        yield Part("polygons", reads=(COLOR, NORMAL), choices=(("polygon_share", share),), constants=same)
+        yield Part("polygons", reads=(COLOR, NORMAL), choices=(("polygon_share", share), *how), constants=same)
 
 
 def _drawn(planning):

@@ -27,5 +27,5 @@ _ATTRIBUTES = (("flat", "vec4", "color_weight"), ("flat", "vec3", "normal"))
 def rasterized(planning) -> tuple[Part, ...]:
     """Parts of every pass that draws splats with the method."""
     widened = _WIDENED if planning.method.widens else ()
-    varyings = (*_PLACE[planning.method.rasterizer], *widened, *_ATTRIBUTES)
+    varyings = (*_PLACE[planning.method.rasterizer], *planning.method.varyings, *widened, *_ATTRIBUTES)
     return (Part("rasterizers", inputs=storage_samplers(planning.settings.storage), varyings=varyings),)

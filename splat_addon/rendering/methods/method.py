@@ -29,6 +29,7 @@ class Method:
         method corrects or clamps.
     widens: quads extend in space past the exact ellipses that the visibility pass draws; for splats seen edge-on, by
         any number of pixels.
+    varyings: (how it is interpolated, type, name) of what it sets up once a splat for its fragments.
     pixel_variance: variance of the pixel filter, samples squared; a box has 1/12. None: the settings choose it.
         Textures are looked up under it.
     printed_variance: the paper's, where the settings choose it.
@@ -45,6 +46,7 @@ class Method:
     hides_within: str = ""
     writes_depth: bool = False
     widens: bool = False
+    varyings: tuple[tuple[str, str, str], ...] = ()
     pixel_variance: float | None = None
     printed_variance: float | None = None
 

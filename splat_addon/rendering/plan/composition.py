@@ -47,6 +47,7 @@ DEFAULTS = {
     "shadow_taps": "even",
     "polygon_share": "compared",
     "polygon_blend": "attributes",
+    "polygon_light": "once",
     "sides": "told_apart",
     "rest_opacity": "surfaces",
     "faces": "one",

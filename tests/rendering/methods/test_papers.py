@@ -14,6 +14,7 @@ from splat_addon.reference.methods.plane import splat_plane
 from splat_addon.reference.methods.sprites import window_depth
 from splat_addon.reference.metrics import psnr
 from splat_addon.rendering import Camera, Renderer, Scene, Settings, plan
+from splat_addon.rendering.plan.programs import describe
 
 SIZE = (128, 128)
 FLAT = Settings(shading="flat", supersampling=1)
@@ -195,6 +196,18 @@ def test_equations_6_and_7_map_the_picture_to_the_splat_and_to_the_depth_in_the_
     np.testing.assert_allclose(np.stack([uw / w, vw / w], axis=1), uv, atol=1e-12)
     np.testing.assert_allclose(w, b / depths)
     np.testing.assert_allclose(depth, window_depth(depths, near, far), atol=1e-12)
+
+
+def test_as_printed_the_map_to_the_splat_is_set_up_once_a_splat():
+    """Guennebaud et al. 2006, section 3.2: the vertex shader computes the matrix, and the fragment shader multiplies
+    with its three columns by two multiplications and additions."""
+    planned = plan(*POSES["torus"], PRINTED)
+    attributes = next(p for p in planned.passes if p.name == "attributes")
+    texts = describe(planned, attributes, "screen_space.vert")
+    assert "mat4x3(cross(t, p), cross(p, s), third, third) / dot(third, p)" in texts.vertex
+    sample = texts.fragment.split("vec2 splat_sample(")[1].split("\n}")[0]
+    assert "uvw = to_splat_x * pixel.x + (to_splat_y * pixel.y + to_splat_origin);" in sample
+    assert "cross" not in sample and "inverse" not in sample
 
 
 def test_one_pass_is_one_pass():
