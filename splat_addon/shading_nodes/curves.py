@@ -5,12 +5,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from .numbers import rows_at
+
 
 def looked_up(place: np.ndarray, table: np.ndarray, extends: bool = False) -> np.ndarray:
     """(n,) values of a (k,) table over 0 to 1, interpolated. extends: whether its ends go on as straight lines."""
     last = len(table) - 1
     at = np.clip(place, 0, 1) * np.float32(last)
-    low = np.minimum(at.astype(np.int32), last - 1)
+    low = rows_at(at, last - 1)
     first = table.take(low)
     result = first + (at - low) * (table.take(low + 1) - first)
     if extends:
@@ -24,7 +26,7 @@ def ramp(factor: np.ndarray, table: np.ndarray, is_stepped: bool) -> np.ndarray:
     """(3, n) colours of a ramp's (k, 3) table."""
     if is_stepped:
         at = np.clip(factor, 0, 1) * np.float32(len(table) - 1)
-        return table.take(at.astype(np.int32), axis=0).T
+        return table.take(rows_at(at, len(table) - 1), axis=0).T
     return np.stack([looked_up(factor, column) for column in table.T])
 
 

@@ -10,6 +10,16 @@ import numpy as np
 _ONE = np.float32(1)
 
 
+def rows_at(place: np.ndarray, last: int) -> np.ndarray:
+    """(n,) int32 the whole rows of a table at places in it, 0 to `last`; 0 for what is no number."""
+    return np.clip(np.nan_to_num(place), 0, last).astype(np.int32)
+
+
+def octaves(detail: np.ndarray) -> np.ndarray:
+    """The Detail of a procedural texture, 0 to 15; 0 for what is no number."""
+    return np.clip(np.nan_to_num(detail), 0, 15)
+
+
 def divided(a, b) -> np.ndarray:
     """a / b; 0 where b is 0."""
     return np.where(b != 0, a / np.where(b != 0, b, _ONE), 0)

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from .numbers import rows_at
+
 #: (81, 3) x, y and z from 380 nm to 780 nm in steps of 5 nm; CIE 15, table T.4, to four digits, in ten thousandths.
 OBSERVER = np.array([
     14, 0, 65, 22, 1, 105, 42, 1, 201, 76, 2, 362, 143, 4, 679, 232, 6, 1102, 435, 12, 2074, 776, 22, 3713,
@@ -35,7 +37,7 @@ _SECOND_RADIATION_CONSTANT = 1.438776877e7
 def wavelength(nanometres: np.ndarray, from_xyz: np.ndarray) -> np.ndarray:
     """(3, n) the colour of light of one wavelength. from_xyz: (3, 3) from CIE XYZ to the working space."""
     place = (nanometres - np.float32(_FIRST)) / np.float32(_STEP)
-    low = np.clip(place, 0, len(OBSERVER) - 2).astype(np.int32)
+    low = rows_at(place, len(OBSERVER) - 2)
     share = (place - low)[:, None]
     xyz = OBSERVER[low] * (1 - share) + OBSERVER[low + 1] * share
     xyz[~((place > -1) & (place < len(OBSERVER) - 1))] = 0
@@ -47,7 +49,7 @@ def blackbody(kelvin: np.ndarray, from_xyz: np.ndarray) -> np.ndarray:
     table = _blackbodies()
     place = (np.clip(kelvin, _COLDEST, _HOTTEST) - np.float32(_COLDEST)) / np.float32(_HOTTEST - _COLDEST)
     place = np.nan_to_num(place) * (len(table) - 1)
-    low = np.minimum(place.astype(np.int32), len(table) - 2)
+    low = rows_at(place, len(table) - 2)
     share = (place - low)[:, None]
     return np.maximum(from_xyz @ (table[low] * (1 - share) + table[low + 1] * share).T, 0).astype(np.float32)
 

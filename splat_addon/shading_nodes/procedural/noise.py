@@ -11,6 +11,7 @@ from itertools import product
 
 import numpy as np
 
+from ..numbers import octaves
 from .hashes import hashed, random
 
 #: Noise repeats after this length, so that its coordinates keep their digits.
@@ -165,7 +166,7 @@ def noise(
     count = len(places)
     if (distortion != 0).any():
         places = [p + signed_noise(seeded(places, k)) * distortion for k, p in enumerate(places)]
-    detail, roughness = np.clip(detail, 0, 15), np.maximum(roughness, 0)
+    detail, roughness = octaves(detail), np.maximum(roughness, 0)
 
     def value(at):
         if kind == "FBM":
@@ -189,7 +190,7 @@ def wave(
         along = np.sqrt(sum(places[k] ** 2 for k in axes)) * 20
     along = along + phase
     if (distortion != 0).any():
-        rough = fractal([*(places * detail_scale)], np.clip(detail, 0, 15), roughness, np.float32([2]), True)
+        rough = fractal([*(places * detail_scale)], octaves(detail), roughness, np.float32([2]), True)
         along = along + distortion * (rough * 2 - 1)
     if profile == "SIN":
         return np.float32(0.5) + np.float32(0.5) * np.sin(along - np.float32(np.pi / 2))

@@ -11,6 +11,7 @@ from itertools import product
 
 import numpy as np
 
+from ..numbers import octaves
 from .hashes import of_cell, random
 from .noise import in_dimensions
 from .patterns import random_color
@@ -180,7 +181,7 @@ def voronoi(
     by_pcg: whether the random numbers of cells are those of newer Blenders.
     """
     places = in_dimensions(vector * scale, w * scale, dimensions)
-    detail, roughness = np.clip(detail, 0, 15), np.clip(roughness, 0, 1)
+    detail, roughness = octaves(detail), np.clip(roughness, 0, 1)
     randomness, smoothness = np.clip(randomness, 0, 1), np.clip(smoothness / 2, 0, np.float32(0.5))
     reach = np.float32(0.5) + np.float32(0.5) * randomness
     if feature == "N_SPHERE_RADIUS":
