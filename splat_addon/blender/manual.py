@@ -48,7 +48,7 @@ PAGES = (
     ("bpy.ops.object.surfel_conversion_preset_add*", _CONVERT),
     ("bpy.ops.view3d.surfels_show*", _CONVERT),
     ("bpy.ops.object.surfels_from_points*", _POINTS),
-    ("bpy.ops.import_scene.surfels*", _POINTS),
+    ("bpy.ops.import_scene.surfels_ply*", _POINTS),
     ("bpy.ops.export_scene.surfels_ply*", _POINTS),
     ("bpy.ops.render.surfel_preset*", "choose.md#preset"),
 )

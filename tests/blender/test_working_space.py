@@ -56,7 +56,7 @@ def test_8_bit_images_of_any_colour_space_are_in_the_working_space(aces, space, 
 def test_files_of_surfels_are_in_rec_709(aces, random_surfels, surfels_of, add_object, tmp_path):
     written = random_surfels(50)
     write_ply(tmp_path / "a.ply", written)
-    bpy.ops.import_scene.surfels(filepath=str(tmp_path / "a.ply"))
+    bpy.ops.import_scene.surfels_ply(filepath=str(tmp_path / "a.ply"))
     made = bpy.context.object
     stored = surfels_of(made)
     assert np.allclose(stored.colors[:, :3], in_file(written.colors), atol=1e-6)

@@ -60,7 +60,9 @@ def steps():
     for name in ("cancelled", "kept"):
         may_end.clear()
         with in_view():
-            bpy.ops.import_scene.surfels("INVOKE_DEFAULT", True, filepath=str(FOLDER / "scan.ply"), keeps_in_file=True)
+            bpy.ops.import_scene.surfels_ply(
+                "INVOKE_DEFAULT", True, filepath=str(FOLDER / "scan.ply"), keeps_in_file=True
+            )
         yield from redrawn()
         press(window, "RET")  # confirms the dialog
         yield from until(is_modal, "the dialog is confirmed")

@@ -37,7 +37,7 @@ from .modal_work import ModalWork, Writing
 _COARSE = 0.1
 
 
-class IMPORT_SCENE_OT_surfels(PointsProperties, ModalWork, ImportHelper, bpy.types.Operator):
+class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ModalWork, ImportHelper, bpy.types.Operator):
     """Read surfels from a file: one written by this extension, Gaussian splats, or a scan; what it is, its contents \
 tell"""
 
@@ -204,5 +204,5 @@ class IO_FH_surfels(bpy.types.FileHandler):
 
 
 register, unregister = with_menu_entry(
-    IMPORT_SCENE_OT_surfels, bpy.types.TOPBAR_MT_file_import, draw_menu_entry, (IO_FH_surfels,)
+    IMPORT_SCENE_OT_surfels_ply, bpy.types.TOPBAR_MT_file_import, draw_menu_entry, (IO_FH_surfels,)
 )

@@ -42,7 +42,7 @@ def test_a_moved_object_whose_file_has_an_origin(stored, picture, surfels_of, tm
     stored.location, stored.rotation_euler.z, stored.scale.x = (0.3, 0.2, 0.5), 0.4, 0.8
     before = picture()
     write_blocks(tmp_path / "far.surfelblocks", [far])
-    bpy.ops.import_scene.surfels(filepath=str(tmp_path / "far.surfelblocks"))
+    bpy.ops.import_scene.surfels_ply(filepath=str(tmp_path / "far.surfelblocks"))
     assert tuple(bpy.context.object.location) == (1e4, 2e4, -5e3)
     bpy.context.object.matrix_world = stored.matrix_world
     stored.hide_render = True

@@ -140,7 +140,7 @@ def test_worlds_and_files_of_surfels_are_in_the_working_space(scene, add_camera,
 
     surfels = replace(random_surfels(1), positions=[[0, 0, 0]], scales=[[9, 9]], rotations=[[1, 0, 0, 0]])
     write_ply(tmp_path / "a.ply", replace(surfels, colors=[[0.9, 0.1, 0.2, 1]]))
-    bpy.ops.import_scene.surfels(filepath=str(tmp_path / "a.ply"))
+    bpy.ops.import_scene.surfels_ply(filepath=str(tmp_path / "a.ply"))
     bpy.ops.object.surfels_to_file(filepath=str(tmp_path / "a.surfelblocks"))
     there = Color((0.9, 0.1, 0.2)).from_rec709_linear_to_scene_linear()[:]
     assert np.allclose(picture()[16, 16, :3], there, atol=1e-4)

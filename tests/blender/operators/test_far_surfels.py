@@ -38,7 +38,7 @@ def imported(tmp_path):
 
     def make(surfels, **settings):
         write_ply(tmp_path / "given.ply", surfels)
-        bpy.ops.import_scene.surfels(filepath=str(tmp_path / "given.ply"), **settings)
+        bpy.ops.import_scene.surfels_ply(filepath=str(tmp_path / "given.ply"), **settings)
         return bpy.context.object
 
     return make
@@ -125,7 +125,7 @@ def test_bare_points_of_a_survey_lie_on_their_places(imported, exported, tmp_pat
     points = places(tile(FAR))
     head = ["ply", "format ascii 1.0", "element vertex 9", *(f"property double {n}" for n in "xyz"), "end_header"]
     (tmp_path / "p.ply").write_text("\n".join([*head, *(" ".join(map(repr, map(float, p))) for p in points), ""]))
-    bpy.ops.import_scene.surfels(filepath=str(tmp_path / "p.ply"), isolated="KEEP")
+    bpy.ops.import_scene.surfels_ply(filepath=str(tmp_path / "p.ply"), isolated="KEEP")
     assert np.abs(drawn()[0] + scene_offset(bpy.context.scene) - points).max() < 1e-7
     assert np.abs(places(exported()) - points).max() < 1e-7
     assert np.abs(places(exported(layout_kind="GAUSSIANS")) - points).max() < 1e-7

@@ -26,7 +26,7 @@ def import_ply():
     """import_ply(path, **settings) -> the new object."""
 
     def run(path, **settings):
-        bpy.ops.import_scene.surfels(filepath=str(path), **settings)
+        bpy.ops.import_scene.surfels_ply(filepath=str(path), **settings)
         return bpy.context.object
 
     return run
@@ -149,7 +149,7 @@ def test_a_file_that_cannot_be_read_is_an_error_and_adds_nothing(tmp_path, conte
     if content is not None:
         (tmp_path / "h.ply").write_text(content)
     with pytest.raises(RuntimeError, match=sentence):
-        bpy.ops.import_scene.surfels(filepath=str(tmp_path / "h.ply"))
+        bpy.ops.import_scene.surfels_ply(filepath=str(tmp_path / "h.ply"))
     assert not bpy.data.objects and not bpy.data.meshes
 
 
@@ -186,7 +186,7 @@ def test_two_slashes_stand_for_the_folder_of_the_blend(stored, import_ply, surfe
     assert made.name == "a" and len(surfels_of(made)) == 200
 
 
-@pytest.mark.parametrize("way", [lambda: bpy.ops.export_scene.surfels_ply, lambda: bpy.ops.import_scene.surfels])
+@pytest.mark.parametrize("way", [lambda: bpy.ops.export_scene.surfels_ply, lambda: bpy.ops.import_scene.surfels_ply])
 def test_before_the_blend_has_a_folder_two_slashes_are_an_error(stored, way):
     with pytest.raises(RuntimeError, match=r"'//a\.ply' begins in the folder of the \.blend, which has not been saved"):
         way()(filepath="//a.ply")
@@ -207,14 +207,14 @@ def test_an_import_beside_an_active_linked_collection_is_in_the_scene(random_sur
     layer = bpy.context.view_layer.layer_collection
     bpy.context.view_layer.active_layer_collection = layer.children[0]
     write_ply(tmp_path / "a.ply", random_surfels(9))
-    bpy.ops.import_scene.surfels(filepath=str(tmp_path / "a.ply"))
+    bpy.ops.import_scene.surfels_ply(filepath=str(tmp_path / "a.ply"))
     assert list(bpy.context.object.users_collection) == [bpy.context.scene.collection]
 
 
 def test_undo_takes_an_import_back(random_surfels, tmp_path):
     write_ply(tmp_path / "a.ply", random_surfels(9))
     bpy.ops.ed.undo_push(message="before")
-    bpy.ops.import_scene.surfels("EXEC_DEFAULT", True, filepath=str(tmp_path / "a.ply"))
+    bpy.ops.import_scene.surfels_ply("EXEC_DEFAULT", True, filepath=str(tmp_path / "a.ply"))
     bpy.ops.ed.undo()
     assert not bpy.data.objects
 
@@ -238,7 +238,7 @@ def test_unregistering_takes_the_operators_and_the_panel_away():
 
 def test_a_file_dropped_on_the_3d_view_is_imported_by_the_same_operator():
     handler = bpy.types.FileHandler.bl_rna_get_subclass_py("IO_FH_surfels")
-    assert handler.bl_import_operator == "import_scene.surfels"
+    assert handler.bl_import_operator == "import_scene.surfels_ply"
     assert {".ply", ".las", ".laz", ".surfelblocks"} <= set(handler.bl_file_extensions.split(";"))
     taking = {area: handler.poll_drop(SimpleNamespace(area=SimpleNamespace(type=area))) for area in ("VIEW_3D", "INFO")}
     assert taking == {"VIEW_3D": True, "INFO": False}

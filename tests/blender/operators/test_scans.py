@@ -39,7 +39,7 @@ def imported(tmp_path):
     def make(corner, **settings):
         data, places = tile(corner)
         (tmp_path / "tile").write_bytes(data)
-        bpy.ops.import_scene.surfels(filepath=str(tmp_path / "tile"), isolated="KEEP", **settings)
+        bpy.ops.import_scene.surfels_ply(filepath=str(tmp_path / "tile"), isolated="KEEP", **settings)
         return bpy.context.object, places
 
     return make
@@ -55,7 +55,7 @@ def test_two_tiles_meet_and_leave_as_they_came(imported, world_positions, tmp_pa
     left = read_contents(tmp_path / "out.ply").surfels
     assert np.abs(left.positions + left.origin - np.concatenate([places for _, places in made])).max() < 1e-5
     # what was exported comes back to its place, in this scene
-    bpy.ops.import_scene.surfels(filepath=str(tmp_path / "out.ply"))
+    bpy.ops.import_scene.surfels_ply(filepath=str(tmp_path / "out.ply"))
     assert np.abs(world_positions(bpy.context.object)[:400] - world_positions(made[0][0])).max() < 1e-5
 
 
@@ -96,7 +96,7 @@ def test_normals_face_the_scanner_that_the_file_names(surfels_of, tmp_path):
     matrix = np.eye(4)
     matrix[:3, 3] = 4e5, 5e6, 0
     (tmp_path / "scan").write_text(ptx_scan(points, 20, matrix))
-    bpy.ops.import_scene.surfels(filepath=str(tmp_path / "scan"))
+    bpy.ops.import_scene.surfels_ply(filepath=str(tmp_path / "scan"))
     surfels = surfels_of(bpy.context.object)
     inward = matrix[:3, 3] - scene_offset(bpy.context.scene) - bpy.context.object.location - surfels.positions
     assert (np.einsum("ij,ij->i", surfels.normals, inward) > 0.5).all()

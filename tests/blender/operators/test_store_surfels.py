@@ -252,7 +252,7 @@ def test_ctrl_c_in_the_background_leaves_nothing(opaque, saved, monkeypatch):
 def test_a_ply_file_goes_to_a_file_portion_by_portion(opaque, saved, tmp_path):
     surfels = opaque(3000, origin=(1e6, 0, 5))
     write_ply(saved / "scan.ply", surfels)
-    assert bpy.ops.import_scene.surfels(filepath=str(saved / "scan.ply"), keeps_in_file=True) == {"FINISHED"}
+    assert bpy.ops.import_scene.surfels_ply(filepath=str(saved / "scan.ply"), keeps_in_file=True) == {"FINISHED"}
     made = bpy.context.object
     assert made.data.surfel_splatting.file == "//scan.surfelblocks"
     assert tuple(made.location) == (1e6, 0, 5)
@@ -262,7 +262,7 @@ def test_a_ply_file_goes_to_a_file_portion_by_portion(opaque, saved, tmp_path):
 def test_a_second_ply_file_of_the_same_name_is_kept_in_another_file(opaque, saved):
     for count in (100, 200):
         write_ply(saved / "scan.ply", opaque(count))
-        bpy.ops.import_scene.surfels(filepath=str(saved / "scan.ply"), keeps_in_file=True)
+        bpy.ops.import_scene.surfels_ply(filepath=str(saved / "scan.ply"), keeps_in_file=True)
     assert counts(saved) == {"scan.001.surfelblocks": 200, "scan.surfelblocks": 100}
     assert bpy.context.object.data.surfel_splatting.file == "//scan.001.surfelblocks"
 
@@ -281,14 +281,14 @@ def test_points_cannot_be_kept_in_a_file(saved):
         "0 0 0\n"
     )
     with pytest.raises(RuntimeError, match="does not hold surfels"):
-        bpy.ops.import_scene.surfels(filepath=str(saved / "bare.ply"), keeps_in_file=True)
+        bpy.ops.import_scene.surfels_ply(filepath=str(saved / "bare.ply"), keeps_in_file=True)
     assert not bpy.data.meshes and len(list(saved.iterdir())) == 2
 
 
 @pytest.mark.parametrize("name", ["statue.surfelblocks", "statue.ply"])
 def test_a_file_is_opened_where_it_is_whatever_its_name(name, opaque, saved):
     write_blocks(saved / name, [opaque(2000)])
-    bpy.ops.import_scene.surfels(filepath=str(saved / name))
+    bpy.ops.import_scene.surfels_ply(filepath=str(saved / name))
     assert bpy.context.object.name == "statue"
     assert bpy.context.object.data.surfel_splatting.file == f"//{name}"
 
@@ -296,7 +296,7 @@ def test_a_file_is_opened_where_it_is_whatever_its_name(name, opaque, saved):
 def test_a_damaged_file_is_an_error_and_adds_nothing(saved):
     (saved / "bad.surfelblocks").write_bytes(b"no")
     with pytest.raises(RuntimeError, match="not a file of surfels in blocks"):
-        bpy.ops.import_scene.surfels(filepath=str(saved / "bad.surfelblocks"))
+        bpy.ops.import_scene.surfels_ply(filepath=str(saved / "bad.surfelblocks"))
     assert not bpy.data.meshes and not bpy.data.objects
 
 
