@@ -80,7 +80,7 @@ MAY_IMPORT = {
 RENDERING_DATA = {"scene", "shadows.maps", "settings", "frame", "view", "depth_range", "methods", "shading_models"}
 RENDERING_DATA |= {"upload.atlas"}
 #: A plan asks the features, whose passes it consists of.
-PLAN_AND_FEATURES = {"plan", "features", "identity", "read_back"}
+PLAN_AND_FEATURES = {"plan", "passes", "features", "identity", "read_back"}
 #: The rooms of `rendering` from the bottom up. Imports go down; only within `PLAN_AND_FEATURES` they go sideways.
 RENDERING_FLOORS = (
     {"background", "cryptomatte", "device", "methods", "shading_models"},
@@ -157,6 +157,18 @@ def test_the_rooms_of_rendering_are_in_floors():
                 if floor_of[there[1]] >= floor_of[here]:
                     wrong.append(f"{file.relative_to(PACKAGE)} imports {'.'.join(there)}")
     assert wrong == []
+
+
+def test_no_import_within_a_function_hides_a_circle():
+    late = {
+        f"{file.relative_to(PACKAGE).as_posix()}: {node.name}"
+        for file in FILES
+        for node in nodes(file)
+        if isinstance(node, ast.FunctionDef)
+        if any(isinstance(inner, ast.ImportFrom) and inner.level for inner in ast.walk(node))
+    }
+    # below `blender`, everything works without bpy
+    assert late == {"__init__.py: register", "__init__.py: unregister"}
 
 
 def test_a_foreign_module_is_known_in_its_own_room_only():

@@ -25,6 +25,7 @@ from splat_addon.rendering import Renderer, Settings, open_device, plan
 from splat_addon.rendering.detail.hierarchies import hierarchy_of
 from splat_addon.rendering.detail.levels import sight
 from splat_addon.rendering.device import Device
+from splat_addon.rendering.passes.decisions import merging
 from splat_addon.sampling import PLAIN, sample_mesh
 
 DEVICES = ("standalone",)
@@ -131,7 +132,7 @@ def run(options, report) -> None:
     surfels = sample_mesh(load(options.models / options.model), resolution=options.resolution, **PLAIN)
     scene, camera = in_view(surfels, options.size, fov=FIELD_OF_VIEW)
     settings = Settings(outputs=("color",), shadow_resolution=0, profile=True)
-    (instance,) = plan(scene, camera, settings).facts["levels"]
+    (instance,) = plan(scene, camera, settings).find(merging)
     levels, seen = hierarchy_of(surfels), sight(instance, camera, False, settings.detail_tolerance)
     splats = packed(surfels, levels.nodes, entries_of(levels, cut_blocks(levels.blocks, seen)))
     trial = Trial(device, splats, instance.model_view(camera), options.size)

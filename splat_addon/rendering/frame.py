@@ -59,6 +59,8 @@ class Frame:
 
 #: Names of the arrays, in order.
 OUTPUTS = tuple(f.name for f in fields(Frame) if f.name != "stats")
+#: Those that are made of the numbers of objects.
+NUMBERED = ("object_index", "material_index", "cryptomatte")
 #: array -> the pixel texture that stores it, and its place in the last axis
 HELD_BY = {f.name: f.metadata["held_by"] for f in fields(Frame) if f.metadata}
 #: array of numbers -> the shape of what it holds of a pixel

@@ -14,13 +14,12 @@ from functools import cached_property
 import numpy as np
 
 from .cryptomatte import Cryptomatte, added_up, name_hash
+from .methods import get_method
+from .passes.decisions import numbered
 from .plan.frame_plan import FILTER_MARGIN, FramePlan
 from .scene import Placed, Scene
 
 INDICES = ("object_index", "material_index")
-
-#: The arrays of a frame that need these numbers.
-NUMBERED = (*INDICES, "cryptomatte")
 
 #: Pixels at silhouettes that are processed at once.
 _CHUNK = 50_000
@@ -76,7 +75,7 @@ class Identified:
         float32, with its margin."""
         x, y, width, height = tile
         indices = [name for name in INDICES if name in self.arrays]
-        numbers = nearest_numbers(seen[:: plan.facts["identity_rows"]], plan) if indices else None
+        numbers = nearest_numbers(seen[:: plan.find(numbered).rows], plan) if indices else None
         for name in indices:
             self.arrays[name][y : y + height, x : x + width] = self._identities.indices[name][numbers]
         if matte := self.arrays.get("cryptomatte"):
@@ -108,7 +107,7 @@ def nearest_numbers(seen: np.ndarray, plan: FramePlan) -> np.ndarray:
 def tile_matte(seen: np.ndarray, tile, size: tuple[int, int], plan: FramePlan, identities: Identities) -> Cryptomatte:
     """The Cryptomatte of a tile, x, y, width and height in a picture of that size. seen: as in `Identified.add`."""
     x, y, width, height = tile
-    between = plan.facts["identity_rows"]
+    between = plan.find(numbered).rows
     away = np.arange(-FILTER_MARGIN * between, FILTER_MARGIN * between + 1) / between
     # the weights of the silhouette filter, in shaders/hosts/resolve.frag.glsl
     variance = plan.filter_variance
@@ -144,7 +143,7 @@ class _Axis:
         kernel = np.zeros(step - between + 1)
         kernel[::between] = 1 / plan.samples
         lead = 0
-        if plan.facts["filters_silhouettes"]:
+        if get_method(plan.method).filters_silhouettes:
             kernel, lead = np.convolve(kernel, weights / weights.sum()), len(weights) // 2
         first = plan.margin * step - lead
         return cls(kernel, step, slice(first, first + (pixels - 1) * step + len(kernel)))

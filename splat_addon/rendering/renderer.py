@@ -22,10 +22,12 @@ from .detail.streamed import Streamed
 from .device import Device
 from .device.interface import Target, texture_bytes
 from .device.interface import Texture as DeviceTexture
-from .features.outputs import PIXELS, check_samplers
+from .features.outputs import check_samplers
 from .features.sample_sum import SUM
 from .frame import OUTPUTS, Frame
 from .identity import Identified, nearer
+from .passes.decisions import numbered
+from .passes.textures import PIXELS
 from .plan.arrivals import check_arrived
 from .plan.build import plan
 from .plan.executor import Execution
@@ -196,7 +198,7 @@ class Renderer:
             for tile, target in self._tiles(shared, camera, stats, progress):
                 place = (tile[0] - left, tile[1] - bottom, *tile[2:])
                 tiles.append((place, read_tile(target, frame_plan, settings.outputs)))
-                if seen := [self._read_whole(t, tile, frame_plan) for t in frame_plan.facts.get("identity", ())]:
+                if seen := [self._read_whole(t, tile, frame_plan) for t in frame_plan.find(numbered).textures]:
                     identified.add(place, nearer(*seen), frame_plan)
         finally:
             self.device.restore()

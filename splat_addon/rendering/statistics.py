@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from .detail.streamed import Streamed
 from .device import Device
+from .features.back_culling import backs
 from .plan.frame_plan import FramePlan
 from .plan.tile import TileContext
 from .plan.together import coarse
@@ -12,6 +13,7 @@ from .plan.together import coarse
 
 def new_stats(device: Device, frame_plan: FramePlan, streamed: Streamed) -> dict:
     """The statistics of a frame before anything is drawn."""
+    culled, culled_of = frame_plan.find(backs)
     return {
         "backend": device.backend,
         "device": device.renderer,
@@ -27,8 +29,8 @@ def new_stats(device: Device, frame_plan: FramePlan, streamed: Streamed) -> dict
         "short_of_memory": streamed.short,
         "unread": streamed.unread,
         "layers": 0,
-        "culled": frame_plan.facts.get("culled", 0),
-        "culled_of": frame_plan.facts.get("culled_of", 0),
+        "culled": culled,
+        "culled_of": culled_of,
         "passes": {},
         "texture_bytes": 0,
     }

@@ -131,6 +131,6 @@ def test_linear_depth_is_planned_where_a_splat_is_wide(lit, camera):
 def test_both_depths_give_one_picture(render_all, monkeypatch):
     scene, camera = WORLDS["torus"]()
     (hardware,) = render_all([(scene, camera, None)])
-    monkeypatch.setattr(import_module("splat_addon.rendering.features.depth_format"), "MAX_HARDWARE_DEPTH_RATIO", 0)
+    monkeypatch.setattr(import_module("splat_addon.rendering.passes.decisions"), "MAX_HARDWARE_DEPTH_RATIO", 0)
     (linear,) = render_all([(scene, camera, None)])
     assert psnr(linear.color, hardware.color) > 60

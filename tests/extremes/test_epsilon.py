@@ -35,7 +35,7 @@ def test_no_splat_hides_itself(angle, epsilon, hold, lit, camera, is_unfiltered)
 
 @pytest.mark.parametrize("angle", [0, 60, 85])
 def test_no_splat_hides_itself_in_linear_depth(angle, hold, lit, camera, is_unfiltered, monkeypatch):
-    monkeypatch.setattr(import_module("splat_addon.rendering.features.depth_format"), "MAX_HARDWARE_DEPTH_RATIO", 0)
+    monkeypatch.setattr(import_module("splat_addon.rendering.passes.decisions"), "MAX_HARDWARE_DEPTH_RATIO", 0)
     settings = Settings(supersampling=2, epsilon=0)
     ((frame, truth),) = hold(
         {"sheet": (lit(sheet(30, 1.0, angle, 2.0)), camera(size=(64, 64)), settings)}, least=0

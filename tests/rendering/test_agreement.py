@@ -36,7 +36,7 @@ from splat_addon.rendering import (
     look_at,
     plan,
 )
-from splat_addon.rendering.identity import NUMBERED
+from splat_addon.rendering.frame import NUMBERED
 from splat_addon.rendering.methods import METHODS, get_method
 from splat_addon.rendering.plan.frame_plan import FILTER_MARGIN
 from splat_addon.rendering.scene.sun_apart import sun_apart

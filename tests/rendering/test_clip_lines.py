@@ -16,6 +16,7 @@ from splat_addon.rendering import Camera, Instance, Light, Material, Scene, Sett
 from splat_addon.rendering.detail import hierarchies
 from splat_addon.rendering.detail.hierarchies import hierarchy_of
 from splat_addon.rendering.methods import METHODS
+from splat_addon.rendering.passes.decisions import merging
 from splat_addon.rendering.plan.hosts import Host
 from splat_addon.rendering.plan.programs import describe
 from splat_addon.rendering.upload.packing import pack_clip_lines
@@ -273,7 +274,7 @@ def test_clipped_surfels_may_have_a_hierarchy_without_nodes(monkeypatch, render)
     assert len(hierarchy_of(surfels)) == 0
     scene = Scene((Instance(surfels, materials=(Material(), Material())),))
     some, every = (render(scene, STRAIGHT, replace(FLAT, detail_tolerance=t)) for t in (1, 0))
-    assert "levels" in some.stats["plan"].facts and every.coverage.max() > 0.9
+    assert some.stats["plan"].find(merging) and every.coverage.max() > 0.9
     assert (some.color == every.color).all()
 
 

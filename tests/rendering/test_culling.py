@@ -9,9 +9,9 @@ import pytest
 from splat_addon.reference import scenes
 from splat_addon.reference.extremes import sheet
 from splat_addon.rendering import Camera, Instance, Renderer, Scene, Settings, look_at
-from splat_addon.rendering.features import depth_bounds
 from splat_addon.rendering.features.hiz import HIZ_CELL
 from splat_addon.rendering.methods import METHODS
+from splat_addon.rendering.passes.textures import DEPTH_BOUNDS
 from splat_addon.rendering.plan import executor
 from splat_addon.rendering.view import build_view
 
@@ -86,7 +86,7 @@ def test_a_cell_holds_the_farthest_that_is_seen_around_it(on_device, monkeypatch
         target = run_pass(tile, p)
         if p.name == "hiz":
             found["cells"] = target.read(0)[..., 0]
-            seen = tile.resources.device.target([tile.texture(depth_bounds.BOUNDS)])
+            seen = tile.resources.device.target([tile.texture(DEPTH_BOUNDS)])
             found["seen"] = seen.read(0)[..., 2]
         return target
 

@@ -10,6 +10,7 @@ import trimesh
 from splat_addon.reference import render_exact
 from splat_addon.rendering import Camera, Light, PolygonInstance, Scene, Settings, look_at, make_polygons, plan
 from splat_addon.rendering.assembly.near_and_far import NearAndFar
+from splat_addon.rendering.passes.decisions import shadows
 from splat_addon.rendering.scene.convex import divided, fans, kept
 from splat_addon.rendering.scene.far_reaching import REACH, pieces, reaching
 from splat_addon.rendering.scene.strays import middle_of, without_strays
@@ -104,7 +105,7 @@ def test_what_lies_far_away_changes_neither_light_nor_shadow(kind, render):
 
 def test_shadow_maps_are_fitted_to_what_is_near():
     def side(*polygons):
-        maps = plan(NearAndFar().resolved(Scene(polygons=polygons, **LIT), camera), camera, COLORS).facts["shadow_maps"]
+        maps = plan(NearAndFar().resolved(Scene(polygons=polygons, **LIT), camera), camera, COLORS).find(shadows).maps
         return next(m.camera.window[1] - m.camera.window[0] for m in maps if m.light == 0)
 
     camera = CAMERAS["perspective"]

@@ -4,12 +4,38 @@
 import ast
 from pathlib import Path
 
-from splat_addon.rendering import features
+import numpy as np
+import pytest
+
+from splat_addon.rendering import Camera, Scene, Settings, features, plan
+from splat_addon.rendering.passes import decisions
 from splat_addon.rendering.plan.composition import FOLDER
 from splat_addon.rendering.plan.hosts import Host, Kind
 
 FEATURES = Path(features.__file__).parent
 TREES = {file: ast.parse(file.read_text(encoding="utf-8")) for file in sorted(FEATURES.parent.rglob("*.py"))}
+
+
+#: Imports from feature to feature: what more of them need belongs into `rendering/passes`.
+MOST_IMPORTS = 20
+
+
+def test_features_have_little_to_do_with_one_another():
+    found = [
+        f"{file.stem} from {name}"
+        for file, tree in TREES.items()
+        for node in ast.walk(tree)
+        if file.parent == FEATURES and file.stem != "__init__" and isinstance(node, ast.ImportFrom) and node.level == 1
+        for name in ([node.module] if node.module else [alias.name for alias in node.names])
+    ]
+    assert 0 < len(found) <= MOST_IMPORTS, found
+
+
+def test_what_was_not_decided_while_planning_is_no_silent_default():
+    made = plan(Scene(), Camera.perspective(np.eye(4), 0.8, (8, 8)), Settings())
+    assert made.find(decisions.has_backdrop) is False
+    with pytest.raises(RuntimeError, match="Nobody decided asked_numbers"):
+        made.find(decisions.asked_numbers)
 
 
 def test_each_host_is_a_shader_and_each_fragment_shader_a_host():

@@ -22,8 +22,10 @@ from splat_addon.rendering import (
 )
 from splat_addon.rendering.assembly.accumulation import mean_frame
 from splat_addon.rendering.cryptomatte import added_up, murmur3_32, name_hash
-from splat_addon.rendering.identity import NUMBERED, Identities, nearest_numbers, tile_matte
+from splat_addon.rendering.frame import NUMBERED
+from splat_addon.rendering.identity import Identities, nearest_numbers, tile_matte
 from splat_addon.rendering.methods import METHODS
+from splat_addon.rendering.passes.decisions import numbered
 from splat_addon.rendering.scene.polygons import make_polygons
 from splat_addon.surfels import Surfels
 from tests.rendering.printed_sizes import for_method
@@ -177,7 +179,7 @@ def test_shares_are_those_of_plain_sums(method, supersampling):
     """The inputs are random; the window of every pixel is added up sample by sample."""
     random = np.random.default_rng(0)
     made = plan(three(), CAMERA, settings(method=method, supersampling=supersampling))
-    step, (width, height), (_, between) = made.samples, (6, 5), (None, made.facts["identity_rows"])
+    step, (width, height), (_, between) = made.samples, (6, 5), (None, made.find(numbered).rows)
     assert between == (2 if method == "mip" else 1)
     shape = (height + 2 * made.margin) * step * between, (width + 2 * made.margin) * step
     blotches = random.integers(0, 5, [-(-n // 3) for n in shape]).repeat(3, 0).repeat(3, 1)[: shape[0], : shape[1]]

@@ -29,6 +29,7 @@ from splat_addon.rendering import (
 from splat_addon.rendering.detail.hierarchies import LEAST_SURFELS, hierarchy_before, hierarchy_of, replaced
 from splat_addon.rendering.detail.history import history
 from splat_addon.rendering.methods import METHODS
+from splat_addon.rendering.passes.decisions import merging, shadows
 from splat_addon.rendering.plan import cut_choice
 from splat_addon.rendering.upload.storages import STORAGES
 from splat_addon.sampling import TriangleMesh
@@ -248,7 +249,7 @@ def test_each_shadow_map_has_a_cut_of_its_own(name, on_device):
             before = renderer.resources.cuts.uploads
             frames.append(renderer.render(scene, camera, replace(SOME, samples=samples, shadow_resolution=64)))
             uploads.append(renderer.resources.cuts.uploads - before)
-        return uploads, frames[0].stats["plan"].facts["shadow_maps"]
+        return uploads, frames[0].stats["plan"].find(shadows).maps
 
     uploads, made = on_device(draw)
     assert len(made) == maps or 1 < len(made) <= 6
@@ -263,7 +264,7 @@ def test_each_view_of_an_object_is_compared_with_its_hierarchy_once(render, monk
     compared = cut_choice.sight
     monkeypatch.setattr(cut_choice, "sight", lambda *of: seen.append(of[:2]) or compared(*of))
     frame = render(scene, camera, replace(SOME, shadow_resolution=64))
-    assert len(frame.stats["plan"].facts["levels"]) == 2
+    assert len(frame.stats["plan"].find(merging)) == 2
     assert len(seen) == len(set(seen)) == 2 * 2
 
 

@@ -8,6 +8,7 @@ import pytest
 
 from splat_addon.reference import scenes
 from splat_addon.rendering import Finish, Instance, Light, Material, PolygonInstance, Scene, Settings, plan
+from splat_addon.rendering.passes.sums import finishes
 from splat_addon.rendering.upload.packing import MAX_FINISHES, finish_shares
 from splat_addon.surfels import LAYOUT, Surfels
 
@@ -182,10 +183,10 @@ def test_more_finishes_than_a_picture_shows_are_the_most_similar_ones_and_the_pl
     materials = [Material(finish=Finish(tint)) for tint in tints]
     many = replace(scene, surfels=(replace(scene.surfels[0], materials=(*materials, *materials[:MAX_FINISHES])),))
     made = plan(many, camera, SETTINGS)
-    assert made.facts["finishes"] == tuple(m.finish for m in materials[:MAX_FINISHES])
+    assert made.find(finishes) == tuple(m.finish for m in materials[:MAX_FINISHES])
     assert "7 different combinations" in dict(made.skipped)["finishes"]
     for material in materials[MAX_FINISHES:]:
-        assert list(finish_shares(material.finish, made.facts["finishes"])) == [0, 0, 0, 1]
+        assert list(finish_shares(material.finish, made.find(finishes))) == [0, 0, 0, 1]
     few = replace(scene, surfels=(replace(scene.surfels[0], materials=tuple(materials[:MAX_FINISHES])),))
     assert "finishes" not in dict(plan(few, camera, SETTINGS).skipped)
 

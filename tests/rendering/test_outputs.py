@@ -21,7 +21,7 @@ from splat_addon.rendering import (
     Settings,
     look_at,
 )
-from splat_addon.rendering.identity import NUMBERED
+from splat_addon.rendering.frame import NUMBERED
 from splat_addon.rendering.scene.polygons import make_polygons
 from splat_addon.rendering.settings import OUTPUTS as ALL_OUTPUTS
 

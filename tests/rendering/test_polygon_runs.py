@@ -16,7 +16,7 @@ from splat_addon.rendering import (
     make_polygons,
 )
 from splat_addon.rendering.culling import polygon_runs
-from splat_addon.rendering.features import drawing
+from splat_addon.rendering.passes import drawing
 
 SIZE = (64, 48)
 ALL = "color", "depth", "normal", "coverage"

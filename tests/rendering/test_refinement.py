@@ -12,7 +12,7 @@ import pytest
 from splat_addon.reference import scenes
 from splat_addon.rendering import Environment, Lens, Light, Pace, Refinement, Renderer, Scene, Settings, plan
 from splat_addon.rendering.assembly.accumulation import sample_camera
-from splat_addon.rendering.features import drawing
+from splat_addon.rendering.passes import drawing
 from splat_addon.rendering.plan import executor
 from splat_addon.rendering.plan.graph import Pause
 from splat_addon.rendering.shadows.receivers import viewers

@@ -24,6 +24,7 @@ from splat_addon.rendering import (
     look_at,
     plan,
 )
+from splat_addon.rendering.passes.decisions import extent
 from splat_addon.rendering.scene.equirectangular import equirectangular_directions
 from splat_addon.rendering.shading_models import SHADING_MODELS
 from splat_addon.surfels import Surfels
@@ -80,7 +81,8 @@ def test_depth_runs_from_the_nearest_to_the_farthest(edge, render, monkeypatch):
         monkeypatch.setattr(import_module("splat_addon.rendering.plan.tiles"), "MAX_TARGET_EDGE", edge)
     step = replace(floor(2.0, half=0.5), positions=floor(2.0, half=0.5).positions + np.float32((-0.5, 0, 0)))
     frame = render(Scene([floor(), step]), ABOVE, Settings(method="quad", shading="depth", supersampling=1))
-    near, far = frame.stats["plan"].facts["depth_range"]
+    found = frame.stats["plan"].find(extent)
+    near, far = found.near, found.far
     assert 2.8 < near < 3 and 5 < far < 5.5  # of boxes around splats
     covered = frame.coverage > 0
     assert np.allclose(frame.color[covered, 0], ((frame.depth - near) / (far - near))[covered], atol=1e-4)

@@ -9,6 +9,7 @@ import pytest
 
 from splat_addon.reference import scenes
 from splat_addon.rendering import Camera, Instance, Light, Scene, Settings, look_at, plan
+from splat_addon.rendering.passes.decisions import shadows
 from splat_addon.rendering.shadows import maps
 from splat_addon.rendering.shadows.casters import hull_planes
 
@@ -53,7 +54,7 @@ SEEN = [*((name, view) for name in ("sun", "point") for view in CAMERAS), ("size
 def test_what_is_left_out_changes_no_picture(name, view, render, monkeypatch):
     scene, camera = balls(LIGHTS[name]), CAMERAS[view]
     bare = render(replace(scene, lights=(replace(LIGHTS[name], casts_shadow=False),)), camera, SETTINGS).color
-    one, made = render(scene, camera, SETTINGS).color, plan(scene, camera, SETTINGS).facts["shadow_maps"]
+    one, made = render(scene, camera, SETTINGS).color, plan(scene, camera, SETTINGS).find(shadows).maps
     monkeypatch.setattr(maps, "used_texels", lambda camera, _: (0, 0, *camera.size))
     monkeypatch.setattr(maps, "in_the_way", lambda *arguments: np.ones(len(scene.surfels), bool))
     every = render(scene, camera, SETTINGS).color
@@ -66,14 +67,14 @@ def test_what_is_left_out_changes_no_picture(name, view, render, monkeypatch):
 def test_faces_of_a_cube_that_nobody_sees_are_not_drawn(name, render):
     scene = balls(LIGHTS[name])
     above = Camera.perspective(look_at((4, 4, 4), (4, 3.9, 0)), 0.1, SIZE, near=0.1, far=100)
-    few, all_round = (plan(scene, camera, SETTINGS).facts["shadow_maps"] for camera in (above, CAMERAS["along"]))
+    few, all_round = (plan(scene, camera, SETTINGS).find(shadows).maps for camera in (above, CAMERAS["along"]))
     assert 0 < len(few) < len(all_round)
 
 
 def test_the_maps_of_a_tilted_area_light_leave_no_gaps():
     """They did between its front and its sides, where light came through walls."""
     scene = balls(replace(LIGHTS["area"], position=(4, 4, 0), half_axes=((0.4, 0, 0), (0, 0.3, 0))))
-    made = plan(scene, Camera.perspective(look_at((4, 4, 40), (4, 3.9, 0)), 0.7, SIZE), SETTINGS).facts["shadow_maps"]
+    made = plan(scene, Camera.perspective(look_at((4, 4, 40), (4, 3.9, 0)), 0.7, SIZE), SETTINGS).find(shadows).maps
     rays = np.random.default_rng(1).normal(size=(10000, 3))
     rays = rays[rays @ LIGHTS["area"].direction > 0]
     views = [rays @ one.camera.matrix_world[:3, :3] for one in made]
@@ -87,11 +88,11 @@ def test_the_maps_of_a_tilted_area_light_leave_no_gaps():
 
 def test_a_light_whose_receivers_are_not_seen_has_no_map():
     scene = balls(replace(LIGHTS["sun"], receivers=(1,)))
-    assert not plan(scene, CAMERAS["near"], SETTINGS).facts["shadow_maps"]
+    assert not plan(scene, CAMERAS["near"], SETTINGS).find(shadows).maps
     middle = len(scene.surfels) // 2
     lit = replace(scene.surfels[middle], light_set=1)
     seen = replace(scene, surfels=(*scene.surfels[:middle], lit, *scene.surfels[middle + 1 :]))
-    assert plan(seen, CAMERAS["near"], SETTINGS).facts["shadow_maps"]
+    assert plan(seen, CAMERAS["near"], SETTINGS).find(shadows).maps
 
 
 def test_whether_there_is_room_for_a_light_does_not_depend_on_the_camera():

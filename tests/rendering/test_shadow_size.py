@@ -25,6 +25,7 @@ from splat_addon.rendering import (
     make_polygons,
     plan,
 )
+from splat_addon.rendering.passes.decisions import shadows
 from splat_addon.rendering.shadows import receivers
 from splat_addon.rendering.shadows.maps import LEAST_SIDE, enough
 from splat_addon.sampling import TriangleMesh
@@ -89,7 +90,7 @@ def from_afar(distance: float, size=SIZE, **options) -> Camera:
 
 
 def maps_of(scene, camera, settings=SETTINGS, **options):
-    return plan(scene, camera, settings, **options).facts["shadow_maps"]
+    return plan(scene, camera, settings, **options).find(shadows).maps
 
 
 def sides(*arguments, **options) -> set:
@@ -208,7 +209,7 @@ def test_a_panorama_and_a_lens_have_one_size_of_a_lamp_s_maps(name, scene_of, re
     through = replace(from_afar(6), lens=Lens(0.05, 30.0))
     for camera in (panorama, through):
         frames = [render(scene, camera, replace(SETTINGS, samples=samples)) for samples in (1, 3)]
-        one, other = (frame.stats["plan"].facts["shadow_maps"] for frame in frames)
+        one, other = (frame.stats["plan"].find(shadows).maps for frame in frames)
         assert same_maps(one, other) and one[0].camera.size[0] < SETTINGS.shadow_resolution
 
 

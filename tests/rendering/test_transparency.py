@@ -13,6 +13,7 @@ from splat_addon.reference.metrics import psnr
 from splat_addon.rendering import EMPTY_DEPTH, Camera, Instance, Light, Material, Scene, Settings, look_at, plan
 from splat_addon.rendering.depth_range import clip_range
 from splat_addon.rendering.methods import METHODS
+from splat_addon.rendering.passes import decisions
 from splat_addon.rendering.view import build_view
 from splat_addon.surfels import Surfels
 
@@ -298,14 +299,14 @@ def test_multisampling_is_refused():
 def test_what_cannot_peel_says_so(settings):
     scene, camera = spheres(16)
     made = plan(scene, camera, Settings(**settings))
-    assert made.facts["layers"] == 0
+    assert made.find(decisions.layers).count == 0
     assert "drawn opaque" in dict(made.skipped)["transparency"]
 
 
 def test_nothing_of_an_opaque_scene_is_for_layers():
     scene, camera = scenes.sphere(count=100)
     made = plan(scene, camera, Settings())
-    assert made.facts["layers"] == 0 and not any("layer" in t or "peel" in t for t in made.textures)
+    assert made.find(decisions.layers).count == 0 and not any("layer" in t or "peel" in t for t in made.textures)
 
 
 def under_the_sun(*casters, **options) -> Scene:
@@ -344,7 +345,7 @@ def test_shadows_are_as_transparent_as_their_casters(opacities, size, render):
 def test_opaque_casters_have_shadows_as_before():
     scene = under_the_sun(half(1.0, 1.0))
     made = plan(scene, CAMERA, Settings())
-    assert made.facts["shadow_maps"] and not made.has("SCREEN_DOOR")
+    assert made.find(decisions.shadows).maps and not made.has("SCREEN_DOOR")
     assert plan(under_the_sun(half(0.5, 1.0)), CAMERA, Settings()).has("SCREEN_DOOR")
     casts_none = under_the_sun(replace(half(0.5, 1.0), casts_shadow=False))
     assert not plan(casts_none, CAMERA, Settings()).has("SCREEN_DOOR")

@@ -34,7 +34,7 @@ DEVICES = ("standalone",)
 QUICK = {"only": "layers", "shots": 1}
 SAMPLES = 2
 EQUAL = 160.0
-DEPTH_FORMAT = import_module("splat_addon.rendering.features.depth_format")
+DEPTH_FORMAT = import_module("splat_addon.rendering.passes.decisions")
 
 
 @dataclass(frozen=True)

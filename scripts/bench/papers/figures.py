@@ -25,7 +25,7 @@ from splat_addon.reference.methods.plane import splat_plane
 from splat_addon.rendering import Camera, Light, Lines, Ramp, Renderer, Scene, Settings, make_polygons
 from splat_addon.rendering.device.interface import FORMATS
 from splat_addon.rendering.device.standalone import _STORED
-from splat_addon.rendering.features import gbuffer
+from splat_addon.rendering.passes.textures import COLOR_SUM
 from splat_addon.rendering.plan.frame_plan import FramePlan
 from splat_addon.sampling import PLAIN, TriangleMesh, joined_at_edges, sample_mesh
 from splat_addon.sampling.ldc.reductions import REDUCTIONS
@@ -187,7 +187,7 @@ def in_steps(weights: np.ndarray) -> np.ndarray:
 def sums_of_8_bits():
     """Colours and weights are summed in a frame buffer of 8 bits a channel, which ends at 1 (2005, section 4.1)."""
     summed = FramePlan.format
-    of_bytes = patch.object(FramePlan, "format", lambda plan, t: "RGBA8" if t is gbuffer.COLOR else summed(plan, t))
+    of_bytes = patch.object(FramePlan, "format", lambda plan, t: "RGBA8" if t is COLOR_SUM else summed(plan, t))
     with patch.dict(FORMATS, RGBA8=4), patch.dict(_STORED, RGBA8=("f1", None)), of_bytes:
         yield
 

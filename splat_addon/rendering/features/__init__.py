@@ -21,6 +21,7 @@ Each module decides from a `Planning` whether the frame needs it, and records th
 from difflib import get_close_matches
 from inspect import isfunction
 
+from ..passes import drawing
 from ..scene.polygons import CORNERS_PER_ROW, TEXELS_PER_CORNER
 from ..shading_models import SHADING_MODELS
 from ..upload.packing import BLEND_STEPS, SPLATS_PER_ROW, TEXELS_PER_SPLAT
@@ -32,7 +33,6 @@ from . import (
     cut_outs,
     depth_bounds,
     depth_format,
-    drawing,
     edge_threshold,
     eye_dome,
     finish,

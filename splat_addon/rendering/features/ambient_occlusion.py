@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
+from ..passes.textures import SAMPLE_DEPTHS
 from ..plan.graph import Part
 from ..plan.hosts import LIT_HOSTS, Kind
 from ..plan.planning import any_of
 from ..plan.tiles import tile_edge
-from . import sample_depths
 
 #: Search distance for occluders in a picture that is drawn in tiles, as a fraction of a tile's edge.
 TILE_SHARE = 1 / 8
@@ -32,12 +32,13 @@ def missing(planning) -> str:
 def margin(planning) -> int:
     """Pixels read beside a tile; 0 if the whole picture is one tile."""
     edge = tile_edge(planning)
-    return int(TILE_SHARE * edge) if not planning.find(missing) and max(planning.camera.size) > edge else 0
+    is_tiled = planning.shown and max(planning.camera.size) > edge
+    return int(TILE_SHARE * edge) if is_tiled and not planning.find(missing) else 0
 
 
 def _reach(tile) -> float:
     """Search distance in samples."""
-    pixels = tile.plan.facts["occlusion_margin"] or max(tile.camera.size)
+    pixels = tile.plan.find(margin) or max(tile.camera.size)
     return pixels * tile.plan.samples
 
 
@@ -53,13 +54,12 @@ def passes(planning):
         if why := planning.find(missing):
             planning.skip("ambient occlusion", why)
         else:
-            planning.facts["occlusion_margin"] = margin(planning)
             planning.has("ambient occlusion", _why(planning))
     return ()
 
 
 def _why(planning) -> str:
-    settings, pixels = planning.settings, margin(planning)
+    settings, pixels = planning.settings, planning.find(margin)
     why = f"surfaces within {settings.ambient_occlusion:g} keep the world's light from one another"
     if pixels:
         why += f"; the picture is drawn in tiles, so they are looked for up to {pixels} pixels away"
@@ -74,4 +74,4 @@ def is_present(planning) -> bool:
 
 def parts(planning, p):
     if p.kind == Kind.OPAQUE and p.host in LIT_HOSTS:
-        yield Part("ambient_occlusion", reads=(sample_depths.DEPTHS,))
+        yield Part("ambient_occlusion", reads=(SAMPLE_DEPTHS,))

@@ -3,16 +3,32 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 from ..plan.graph import Part
 from ..plan.hosts import DRAWING_HOSTS, Host, Kind
 
 
+class Backs(NamedTuple):
+    """The number of splats that show their backs, and of all that may."""
+
+    count: int
+    among: int
+
+
+def backs(planning) -> Backs:
+    """The splats that are asked to be left out."""
+    if not planning.settings.culls_backs:
+        return Backs(0, 0)
+    among = sum(kind.count * len(kind.placed.surfels) for kind in planning.surfels)
+    return Backs(sum(instance.backs(planning.camera) for instance in planning.scene.surfels), among)
+
+
 def passes(planning):
     """No passes; records whether there are such splats, and how many."""
+    count, among = planning.find(backs)
     if planning.shown and planning.settings.culls_backs:
-        count = planning.facts["culled_of"] = sum(kind.count * len(kind.placed.surfels) for kind in planning.surfels)
-        backs = planning.facts["culled"] = sum(i.backs(planning.camera) for i in planning.scene.surfels)
-        planning.has("BACK_CULLING", f"{backs:,} of {count:,} splats show their backs, and are asked to be left out")
+        planning.has("BACK_CULLING", f"{count:,} of {among:,} splats show their backs, and are asked to be left out")
     return ()
 
 

@@ -7,10 +7,11 @@ They are a separate draw call, with the variant "clipped" of every program that 
 from __future__ import annotations
 
 from ...large_surfels import SAMPLE_SIZE
+from ..passes.decisions import have_clip_lines
+from ..passes.drawing import pooled
 from ..plan.graph import Part
 from ..plan.hosts import BLENDED, DRAWING_HOSTS, Host
-from ..plan.planning import count, counted
-from .drawing import pooled
+from ..plan.planning import counted
 
 CONSTANTS = {"SAMPLE_SIZE": SAMPLE_SIZE}
 
@@ -33,13 +34,9 @@ DRAWN = {"clip_lines": _drawn}
 ARRIVES = {"clip_lines": lambda instance: instance.surfels.clipped_count > 0}
 
 
-def _count(planning) -> int:
-    return count(lambda instance: instance.surfels.clipped_count > 0, planning.surfels)
-
-
 passes, is_present = counted(
     "CLIP_LINES",
-    _count,
+    have_clip_lines,
     "splats of {count} instances end at creases and borders, drawn by themselves",
     "clip lines",
     "all splats are whole",

@@ -7,10 +7,10 @@ layers.
 
 from __future__ import annotations
 
+from ..passes.textures import rows_of
 from ..plan.graph import Part
 from ..plan.hosts import Host, Kind
 from ..plan.planning import count, counted
-from . import silhouettes
 from .textures import ATLAS, OF_TRIANGLES
 
 _VARYINGS = (("smooth", "vec3", "cut_place"), ("smooth", "vec3", "cut_eye"), *OF_TRIANGLES)
@@ -32,7 +32,7 @@ passes, is_present = counted(
 def parts(planning, p):
     if p.host == Host.VISIBILITY and p.kind != Kind.LAYER:
         words = () if p.kind == Kind.SHADOW else ("in_view",)
-        rows = (("ROWS", silhouettes.rows_of(p.depth)),)
+        rows = (("ROWS", rows_of(p.depth)),)
         inputs = "polygon_uvs", *ATLAS
         yield Part("cut_outs", words, inputs=inputs, varyings=_VARYINGS, constants=rows, only="cut_out")
     if p.host == Host.POLYGONS:

@@ -5,21 +5,20 @@ they compare depths themselves, and only visible polygons are drawn.
 
 from __future__ import annotations
 
+from ..passes.decisions import have_rows, nearest_depth
+from ..passes.textures import DEPTH_BOUNDS, VISIBILITY_DEPTH, rows_of
 from ..plan.graph import Part, Pass, Texture, fill
 from ..plan.hosts import BLENDED, Host, Kind
-from . import silhouettes, visibility
-
-BOUNDS = Texture("depth_bounds")
 
 
 def bounds(planning, reason: str, seen: Texture, kind: Kind = Kind.OPAQUE) -> Pass:
     """The pass that stores the visible depths; and the depths of samples, if visibility has more rows than there are
     samples."""
-    rows = silhouettes.rows_of(seen)
+    rows = rows_of(seen)
     own = Part(
         "depth_bounds",
         reads=(seen,),
-        writes=(BOUNDS, *((visibility.DEPTH,) if rows > 1 else ())),
+        writes=(DEPTH_BOUNDS, *((VISIBILITY_DEPTH,) if rows > 1 else ())),
         called=((seen, "seen_depth"),),
         constants=(("ROWS", rows),),
         words=("writes_depth",) if rows > 1 else (),
@@ -33,14 +32,14 @@ def passes(planning):
     if not planning.shown or method.rasterizer == "point_sprite":
         return
     if not method.spreads:
-        planning.skip(BOUNDS.name, f"{method.name} is tested by the hardware, with the depth of visibility")
+        planning.skip(DEPTH_BOUNDS.name, f"{method.name} is tested by the hardware, with the depth of visibility")
         return
     compared = f"{method.name} computes its depths, which are compared in the shader"
     if method.rasterizer == "object_space":
         compared = f"polygons are seen where {method.name} spreads past what hides them"
-    if planning.find(silhouettes.have_rows):
+    if planning.find(have_rows):
         compared += "; between samples, silhouettes are looked for alone"
-    yield bounds(planning, compared, visibility.nearest_depth(planning))
+    yield bounds(planning, compared, nearest_depth(planning))
 
 
 def is_present(planning) -> bool:
@@ -49,6 +48,6 @@ def is_present(planning) -> bool:
 
 def parts(planning, p):
     if p.host == Host.SCREEN_SPACE and p.kind in BLENDED:
-        yield Part("depth_bounds", reads=(BOUNDS,))
+        yield Part("depth_bounds", reads=(DEPTH_BOUNDS,))
     if p.host in (Host.POLYGONS, Host.LINES):
-        yield Part("depth_bounds", reads=(BOUNDS,))
+        yield Part("depth_bounds", reads=(DEPTH_BOUNDS,))

@@ -5,11 +5,11 @@ from __future__ import annotations
 
 import math
 
+from ..passes.textures import SAMPLE_DEPTHS
 from ..plan.graph import Part
 from ..plan.hosts import LIT_HOSTS, Kind
 from ..plan.planning import any_of
 from ..scene.eye_dome import steps_of
-from . import sample_depths
 
 
 def missing(planning) -> str:
@@ -50,4 +50,4 @@ def margin(planning) -> int:
 
 def parts(planning, p):
     if p.kind == Kind.OPAQUE and p.host in LIT_HOSTS:
-        yield Part("eye_dome", reads=(sample_depths.DEPTHS,))
+        yield Part("eye_dome", reads=(SAMPLE_DEPTHS,))

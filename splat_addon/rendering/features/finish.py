@@ -7,25 +7,23 @@ are mixed by these.
 
 from __future__ import annotations
 
-from collections import Counter
 from functools import partial
 
+from ..passes.decisions import model_in
+from ..passes.sums import counted_finishes, finishes, material_texels, summed_finishes
 from ..plan.graph import Part, Texture
-from ..plan.hosts import BLENDED, LIGHTING_HOSTS, LIT_HOSTS, SPLAT_HOSTS, Host, Kind
-from ..plan.planning import any_of
+from ..plan.hosts import BLENDED, LIGHTING_HOSTS, LIT_HOSTS, SPLAT_HOSTS, Host
 from ..scene import Finish
-from ..scene.table import Kinds
 from ..shading_models.brdf_table import edge_texels
 from ..upload.packing import MAX_FINISHES, finish_matrix
-from . import gbuffer, lights, materials, outputs
 
 SHARES = Texture("gbuffer_finish", is_multisampled=True, is_sum=True)
 
 
 def _matrix(tile, number: int):
     """A finish of the frame; the first in the place of those that it lacks, whose shares are 0."""
-    finishes = tile.plan.facts["finishes"]
-    return finish_matrix(finishes[number if number < len(finishes) else 0])
+    found = tile.plan.find(finishes)
+    return finish_matrix(found[number if number < len(found) else 0])
 
 
 VALUES = {f"finish_{number}": ("mat4", partial(_matrix, number=number)) for number in range(MAX_FINISHES)}
@@ -34,41 +32,9 @@ INPUTS = {"edge_table": lambda tile: tile.resources.constant(edge_texels)}
 _TABLES = {"specular_tint": "edge_table"}
 
 
-def found(planning) -> tuple[Finish, ...]:
-    """The finishes that the frame tells apart, the most common first; none if all are plain."""
-    kept = tuple(finish for finish, _ in planning.scene.table.kinds.find(_counted).most_common(MAX_FINISHES))
-    has_any = any(finish.layers for finish in kept)
-    return kept if has_any and (len(kept) == 1 or _has_room(planning)) else ()
-
-
-def _counted(kinds: Kinds) -> Counter[Finish]:
-    """How many instances have each finish."""
-    counted = Counter()
-    for placed, number in kinds:
-        for material in placed.materials:
-            counted[material.finish] += number
-    return counted
-
-
-def _has_room(planning) -> bool:
-    """Whether the other sums of a frame leave room for one more."""
-    has_layers = any_of(lambda instance: instance.is_transparent, planning.surfels)
-    kinds = BLENDED if has_layers else (Kind.OPAQUE,)
-    sums = 2 + any(gbuffer.depths_are_apart(planning, kind) for kind in kinds) + sum(materials.differ(planning))
-    return sums + lights.are_linked(planning) + outputs.counts_splats(planning) < outputs.MAX_COLORS
-
-
-def summed(planning) -> tuple[Finish, ...]:
-    """The finishes if there are several, because each sample then sums their shares; otherwise none."""
-    kept = planning.find(found) if planning.model.has_finish else ()
-    return kept if len(kept) > 1 else ()
-
-
 def passes(planning):
     """No passes; records what the frame has."""
-    planning.facts["finishes"] = kept = planning.find(found)
-    planning.facts["summed_finishes"] = summed(planning)
-    every = planning.scene.table.kinds.find(_counted)
+    kept, every = planning.find(finishes), planning.scene.table.kinds.find(counted_finishes)
     if not kept and any(finish.layers for finish in every):
         planning.skip("finishes", _NO_ROOM)
         return ()
@@ -97,16 +63,17 @@ _NO_ROOM = (
 _COVERS = frozenset({"coat", "sheen"})
 
 
-def _layers(finishes: tuple[Finish, ...]) -> tuple[str, ...]:
+def _layers(found: tuple[Finish, ...]) -> tuple[str, ...]:
     """The optional parts, such as a coat, that any of the finishes has."""
-    return tuple(dict.fromkeys(layer for finish in finishes for layer in finish.layers))
+    return tuple(dict.fromkeys(layer for finish in found for layer in finish.layers))
 
 
 def parts(planning, p):
-    if not planning.model.has_finish or not planning.find(found):
+    model, found = model_in(planning, p), planning.find(finishes)
+    if not model.has_finish or not found:
         return
-    drawn = {"inputs": ("materials",), "constants": materials.texels(planning)}
-    differ, layers = bool(summed(planning)), _layers(planning.find(found))
+    drawn = {"inputs": ("materials",), "constants": planning.find(material_texels).constants}
+    differ, layers = bool(summed_finishes(planning, model)), _layers(found)
     if p.host in SPLAT_HOSTS and p.kind in BLENDED and differ:
         yield Part("finish", writes=(SHARES,), varyings=(("flat", "vec4", "finish"),), **drawn)
     if p.host in LIGHTING_HOSTS:

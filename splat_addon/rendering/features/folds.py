@@ -7,10 +7,10 @@ not linear in the normal, so it comes before the mean, as in the exact picture, 
 
 from __future__ import annotations
 
+from ..passes.decisions import have_clip_lines
 from ..plan.graph import Part
 from ..plan.hosts import LIT_HOSTS
 from ..plan.tiles import tile_edge
-from . import clip_lines
 
 CONSTANTS = {"FOLD_REACH": 4}
 
@@ -18,7 +18,7 @@ CONSTANTS = {"FOLD_REACH": 4}
 def missing(planning) -> str:
     """The reason why the frame has no folds, or ""."""
     scene, model = planning.scene, planning.model
-    if not clip_lines.is_present(planning):
+    if not planning.find(have_clip_lines):
         return "no splat ends at a crease"
     if not planning.method.blurs_rims:
         return f"{planning.method.name} ends splats sharply, so creases mix no normals"

@@ -3,12 +3,15 @@
 
 from __future__ import annotations
 
+from ..passes.decisions import depth_format
+from ..passes.drawing import draw_splats
+from ..passes.rasterizers import rasterized
+from ..passes.sums import depth_parts
+from ..passes.textures import COLOR_SUM, DEPTH_SUM, NORMAL_SUM, VISIBILITY_DEPTH
 from ..plan.graph import Part, Pass, Texture
 from ..plan.hosts import LIT_HOSTS, RASTERIZED, Host, Kind
 from ..plan.planning import count
-from . import depth_format, lit_splats, shadows, visibility
-from .drawing import draw_splats
-from .rasterizers import rasterized
+from . import lit_splats
 
 NAMES = ("gbuffer", "depth_in_normals", "gbuffer_depth")
 VALUES = {
@@ -16,36 +19,12 @@ VALUES = {
     "color_unit": ("float", lambda tile: 1 / tile.shared.color_scale),
 }
 
-COLOR = Texture("gbuffer_color", is_multisampled=True, is_sum=True)
-NORMAL = Texture("gbuffer_normal", is_multisampled=True, is_sum=True)
-DEPTH_SUM = Texture("gbuffer_depth", "RG32F", is_multisampled=True)
-#: With room for the planes that shadows compare depths with, because targets have no room for another texture.
-DEPTH_PLANE_SUM = Texture("gbuffer_depth", "RGBA32F", is_multisampled=True)
 SPRITE_DEPTH = Texture("sprite_depth", "DEPTH32F")
-
-
-def depths_are_apart(planning, kind: Kind) -> bool:
-    """Whether depths are summed separately from normals."""
-    return kind == Kind.LAYER or planning.settings.sum_format == "float16"
-
-
-def depth_sum(planning) -> Texture:
-    """The sum of separate depths, of all passes alike."""
-    has_planes = planning.find(shadows.maps) and lit_splats.lights_samples(planning, Kind.OPAQUE)
-    return DEPTH_PLANE_SUM if has_planes else DEPTH_SUM
-
-
-def depth_parts(planning, kind: Kind, **fields) -> Part:
-    """The parts for depths, which are stored beside normals or separately. fields: further fields of the part."""
-    if not depths_are_apart(planning, kind):
-        return Part("depth_in_normals", **fields)
-    apart = depth_sum(planning)
-    return Part("gbuffer_depth", **{field: (*textures, apart) for field, textures in fields.items()})
 
 
 def state(planning) -> dict:
     """State of programs that sum splats."""
-    rasterizer, is_linear = planning.method.rasterizer, planning.find(depth_format.linear)[0]
+    rasterizer, is_linear = planning.method.rasterizer, planning.find(depth_format).is_linear
     settings, in_space = planning.settings, rasterizer == "object_space"
     return {
         "blend": "none" if rasterizer == "point_sprite" else "add",
@@ -58,8 +37,8 @@ def state(planning) -> dict:
 
 def attributes(planning, reason: str, tests: Texture | None, kind: Kind = Kind.OPAQUE) -> Pass:
     """The attribute pass, with a depth for the hardware's test."""
-    own = Part("gbuffer", writes=(COLOR,), tests=(tests,) if tests else ())
-    own_parts = own, *rasterized(planning), depth_parts(planning, kind, writes=(NORMAL,))
+    own = Part("gbuffer", writes=(COLOR_SUM,), tests=(tests,) if tests else ())
+    own_parts = own, *rasterized(planning), depth_parts(planning, kind, writes=(NORMAL_SUM,))
     if planning.method.rasterizer == "point_sprite":
         own_parts += (Part("gbuffer", writes=(SPRITE_DEPTH,)),)
     host, lit = RASTERIZED[planning.method.rasterizer], lit_splats.each(planning)
@@ -74,12 +53,12 @@ def passes(planning):
     if planning.method.rasterizer == "point_sprite":
         yield attributes(planning, "the nearest splat wins", None)
     else:
-        yield attributes(planning, _why(planning), visibility.DEPTH)
+        yield attributes(planning, _why(planning), VISIBILITY_DEPTH)
 
 
 def parts(planning, p):
     if p.host in (*LIT_HOSTS, Host.LINES):
-        yield depth_parts(planning, p.kind, reads=(COLOR, NORMAL))
+        yield depth_parts(planning, p.kind, reads=(COLOR_SUM, NORMAL_SUM))
 
 
 def _why(planning) -> str:

@@ -16,14 +16,13 @@ import numpy as np
 from ..culling.cover import COVER_CELL, Cover
 from ..culling.hidden_blocks import BlocksFrontToBack
 from ..methods import get_method
+from ..passes.decisions import merging
 from ..plan.graph import Part, Pass, Texture, of_samples
 from ..plan.hosts import Host
 from ..scene.table import Kind
 from ..view import DrawItem, Items
-from . import levels
 
 CONSTANTS = {"COVER_CELL": COVER_CELL}
-INPUTS = {"covering_depth": lambda tile: tile.texture(tile.plan.facts["covering_depth"])}
 
 #: For fewer objects or surfels than this, looking costs more than it may save.
 LEAST_OBJECTS, LEAST_SURFELS = 8, 200_000
@@ -70,14 +69,13 @@ def search(planning, seen: Texture, rows: int) -> Pass | None:
         "HIDDEN_OBJECTS",
         f"some of {sum(kind.count for kind in opaque)} objects, or parts of them, may be behind others",
     )
-    planning.facts["covering_depth"] = seen
-    return looking("hidden_objects", FARTHEST, rows)
+    return looking("hidden_objects", seen, FARTHEST, rows)
 
 
 def may_hide(planning, opaque: list[Kind]) -> bool:
     """Whether objects of these kinds are so many that some of them may be behind others, or so large that parts may
     be."""
-    with_levels, sizes = planning.find(levels.merging), [len(kind.placed.surfels) for kind in opaque]
+    with_levels, sizes = planning.find(merging), [len(kind.placed.surfels) for kind in opaque]
     is_large = any(
         k.placed.surfels in with_levels and size >= LEAST_SURFELS for k, size in zip(opaque, sizes, strict=True)
     )
@@ -86,13 +84,13 @@ def may_hide(planning, opaque: list[Kind]) -> bool:
     return is_large or (objects >= LEAST_OBJECTS and surfels >= LEAST_SURFELS)
 
 
-def looking(name: str, farthest: Texture, rows: int = 1) -> Pass:
-    """A pass that finds how far each cell sees, of the depth that the plan's facts name. rows: as of `search`."""
+def looking(name: str, seen: Texture, farthest: Texture, rows: int = 1) -> Pass:
+    """A pass that finds how far each cell of a depth sees. rows: as of `search`."""
     own = Part(
         "hidden_objects",
-        inputs=("covering_depth",),
+        reads=(seen,),
         writes=(farthest,),
-        called=((farthest, FARTHEST.name),),
+        called=((seen, "covering_depth"), (farthest, FARTHEST.name)),
         constants=(("ROWS", rows),),
     )
     return Pass(name, "how far each cell sees", Host.HIDDEN_OBJECTS, _run_by_visibility, (own,))

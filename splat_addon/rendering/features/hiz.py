@@ -9,10 +9,10 @@ from __future__ import annotations
 import numpy as np
 
 from ..culling.backs import show_backs
+from ..passes.textures import DEPTH_BOUNDS
 from ..plan.graph import Part, Pass, Texture, fill, of_samples
 from ..plan.hosts import Host, Kind
 from ..scene import Instance
-from . import depth_bounds
 
 #: Samples along each side of a cell.
 HIZ_CELL = 4
@@ -45,7 +45,7 @@ def pays(planning) -> str:
 
 def passes(planning):
     if planning.shown and (why := planning.find(pays)):
-        own = Part("hiz", reads=(depth_bounds.BOUNDS,), writes=(FARTHEST,))
+        own = Part("hiz", reads=(DEPTH_BOUNDS,), writes=(FARTHEST,))
         yield Pass("hiz", why, Host.HIZ, fill, (own,))
 
 

@@ -5,13 +5,15 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from ..passes.decisions import nearest_depth
+from ..passes.textures import VISIBILITY_DEPTH, of_rows
 from ..plan.graph import Part, Pass, Texture
 from ..plan.hosts import LIT_HOSTS, SPLAT_HOSTS, Host, Kind
 from ..plan.planning import count
-from . import silhouettes, visibility
+from . import visibility
 
 DEPTH = Texture("holdout_depth", "DEPTH32F")
-ROW_DEPTH = Texture("row_holdout_depth", "DEPTH32F", silhouettes.of_rows)
+ROW_DEPTH = Texture("row_holdout_depth", "DEPTH32F", of_rows)
 
 
 def _count(planning) -> int:
@@ -28,7 +30,7 @@ def passes(planning):
     elif cutting:
         planning.has("HOLDOUT", f"{cutting} of {len(planning.shown)} instances cut holes")
     if cutting and planning.method.rasterizer == "screen_space":
-        own = visibility.own_parts(planning, visibility.nearest_depth(planning, DEPTH, ROW_DEPTH))
+        own = visibility.own_parts(planning, nearest_depth(planning, DEPTH, ROW_DEPTH))
         why = "a filter brings what lies behind a hole before it"
         yield visibility.drawn("holdouts", why, own, planning, Kind.HOLES)._replace(run=run)
 
@@ -41,10 +43,10 @@ def parts(planning, p):
     if p.kind != Kind.OPAQUE:
         return
     if p.host == Host.DEPTH_BOUNDS:
-        depth = visibility.nearest_depth(planning, DEPTH, ROW_DEPTH)
+        depth = nearest_depth(planning, DEPTH, ROW_DEPTH)
         yield Part("holdout", reads=(depth,), called=((depth, "holes"),))
     if p.host in LIT_HOSTS:
-        yield Part("holdout", reads=(visibility.DEPTH,))
+        yield Part("holdout", reads=(VISIBILITY_DEPTH,))
     if p.host in (Host.SCREEN_SPACE, Host.RESOLVE):
         yield Part("holdout")
 

@@ -8,12 +8,12 @@ the same instance with different cuts.
 
 from __future__ import annotations
 
-from ..detail import hierarchies, levels
+from ..detail import hierarchies
+from ..passes.decisions import merging, splat_lighting
 from ..plan.graph import Part
 from ..plan.hosts import SPLAT_HOSTS, Host
 from ..plan.planning import count
 from ..upload.cuts import NUMBERS_PER_ROW
-from . import lit_splats
 
 CONSTANTS = {"NUMBERS_PER_ROW": NUMBERS_PER_ROW}
 
@@ -26,24 +26,14 @@ def _drawn(tile, placed):
 DRAWN = {"drawn_splats": _drawn}
 
 
-def merging(planning) -> frozenset:
-    """The sets that may have merged surfels in the picture; only these may have them in shadow maps."""
-    if planning.find(lit_splats.wanted):
-        return frozenset()
-    tolerance, method = planning.settings.detail_tolerance, planning.method
-    seen = planning.scene, planning.camera, tolerance, planning.samples
-    return levels.merging(*seen, planning.history, method.widens)
-
-
 def passes(planning):
     """No passes; records whether there are any."""
     if planning.shown:
         if not planning.settings.detail_tolerance:
             planning.skip("levels of detail", "every surfel is drawn, as the tolerance is 0")
-        elif planning.find(lit_splats.wanted):
+        elif planning.find(splat_lighting).is_wanted:
             planning.skip("levels of detail", "every surfel is lit by itself")
         elif found := planning.find(merging):
-            planning.facts["levels"] = found
             instances = count(lambda instance: instance.surfels in found, planning.surfels)
             planning.has("LEVELS", f"{instances} instances may have surfels too small to be seen one by one")
         else:
@@ -54,7 +44,7 @@ def passes(planning):
 
 
 def is_present(planning) -> bool:
-    return "levels" in planning.facts
+    return bool(planning.find(merging))
 
 
 def parts(planning, p):

@@ -4,14 +4,13 @@ stored for a later filter."""
 
 from __future__ import annotations
 
+from ..passes.decisions import model_in, nearest_depth
+from ..passes.textures import ALWAYS_WRITTEN, DEPTH_BOUNDS, SHADED, SURFACE, rows_of
 from ..plan.graph import Part, Pass, Texture
 from ..plan.hosts import LIGHTING_HOSTS, Host, Kind
 from ..read_back import background_texels
-from . import depth_bounds, outputs, silhouettes, visibility
 
 NAMES = ("lighting", "picture")
-SHADED = Texture("shaded")
-SURFACE = Texture("surface")
 
 #: Methods that do not widen splats in space draw less than this many pixels beyond their ellipses.
 _BESIDE = 8
@@ -48,10 +47,10 @@ def _filtered(planning, reason: str, seen: Texture, writes, kind: Kind = Kind.OP
     """The pass that filters silhouettes."""
     own = Part(
         "lighting",
-        reads=(SHADED, SURFACE, seen, depth_bounds.BOUNDS),
+        reads=(SHADED, SURFACE, seen, DEPTH_BOUNDS),
         writes=writes,
         called=((seen, "seen_depth"),),
-        constants=(("SAMPLES", planning.settings.supersampling), ("ROWS", silhouettes.rows_of(seen))),
+        constants=(("SAMPLES", planning.settings.supersampling), ("ROWS", rows_of(seen))),
     )
     run = fill_lit if state else fill_pixels
     return Pass("resolve", reason, Host.RESOLVE, run, (own,), kind, state or {}, adds=bool(state))
@@ -74,17 +73,17 @@ def layer_pixels(planning, depth: Texture, writes: tuple[Texture, ...]) -> Pass:
 def passes(planning):
     if not planning.shown:
         return
-    once, pixels = f"{planning.model.name}, once a sample", outputs.ALWAYS_WRITTEN
+    once, pixels = f"{planning.model.name}, once a sample", ALWAYS_WRITTEN
     if planning.method.filters_silhouettes:
         yield deferred(planning, once)
-        yield _filtered(planning, "silhouettes are filtered", visibility.nearest_depth(planning), pixels)
+        yield _filtered(planning, "silhouettes are filtered", nearest_depth(planning), pixels)
     else:
         own = Part("lighting", writes=pixels, constants=_samples(planning))
         yield Pass("shading", once, Host.SHADING, fill_pixels, (own,))
 
 
 def parts(planning, p):
-    if p.host in LIGHTING_HOSTS and planning.model.tables:
-        yield Part("lighting", inputs=tuple(planning.model.tables))
+    if p.host in LIGHTING_HOSTS and (tables := model_in(planning, p).tables):
+        yield Part("lighting", inputs=tuple(tables))
     if p.kind == Kind.OPAQUE and p.host in (Host.DEFERRED_LIGHTING, Host.RESOLVE):
         yield Part("picture")

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from ..passes.decisions import model_in
+from ..passes.sums import are_linked
 from ..plan.graph import Part, Texture
 from ..plan.hosts import BLENDED, LIGHTING_HOSTS, LIT_HOSTS, SPLAT_HOSTS, Host
 from . import shadows
@@ -14,10 +16,6 @@ INPUTS = {"lights": shadows.lights_texture}
 SETS = Texture("gbuffer_light_set", is_multisampled=True, is_sum=True)
 
 
-def are_linked(planning) -> bool:
-    return planning.model.is_lit and any(light.receivers is not None for light in planning.scene.lights)
-
-
 def passes(planning):
     """No passes; records what lights the frame has."""
     if not planning.shown:
@@ -26,7 +24,7 @@ def passes(planning):
         planning.skip("lights", f"{planning.model.name} shading does not look at lights")
     elif not planning.scene.lights:
         planning.skip("lights", "the scene has none")
-    if not are_linked(planning):
+    if not are_linked(planning, planning.model):
         planning.skip(SETS.name, "every light lights everything, or nothing is lit")
     sized = sum(light.is_sized for light in planning.scene.lights)
     if planning.model.is_lit and sized:
@@ -37,16 +35,17 @@ def passes(planning):
 
 
 def parts(planning, p):
-    is_lit = planning.model.is_lit and planning.scene.lights
-    if p.host in SPLAT_HOSTS and p.kind in BLENDED and are_linked(planning):
+    model = model_in(planning, p)
+    is_lit, linked = model.is_lit and planning.scene.lights, are_linked(planning, model)
+    if p.host in SPLAT_HOSTS and p.kind in BLENDED and linked:
         yield Part("light_links", writes=(SETS,))
     if p.host in LIT_HOSTS and is_lit:
         yield Part("lights", inputs=("lights",))
-        if are_linked(planning):
+        if linked:
             yield Part("light_links", reads=(SETS,))
     if p.host == Host.LIT_SPLATS and is_lit:
         yield Part("lights", inputs=("lights",))
-        if are_linked(planning):
+        if linked:
             yield Part("light_links")
     if p.host in LIGHTING_HOSTS and is_lit and any(one.is_sized for one in planning.scene.lights):
         yield Part("sized_lights")

@@ -8,63 +8,53 @@ lit at samples, and colours blend (Guennebaud et al. 2006, section 5.1).
 
 from __future__ import annotations
 
+from ..passes.decisions import lights_samples, splat_lighting
+from ..passes.drawing import Programs, draw_block, draw_parts
+from ..passes.rasterizers import storage_samplers
 from ..plan.graph import Part, Pass, Texture
 from ..plan.hosts import BLENDED, LIT_HOSTS, SPLAT_HOSTS, Host, Kind
-from ..scene import Instance
-from ..shading_models import ShadingModel, get_shading_model
 from ..upload.packing import SPLATS_PER_ROW, row_count
 from ..upload.parts import largest_part
-from .drawing import Programs, draw_block, draw_parts, storage_samplers
 
 
 def _of_splats(plan, pixels: tuple[int, int]) -> tuple[int, int]:
-    return SPLATS_PER_ROW, plan.facts["lit_rows"]
+    return SPLATS_PER_ROW, plan.find(rows)
 
 
 LIT = Texture("lit_splats", per=_of_splats)
 
 
-def wanted(planning) -> bool:
-    """Whether splats are lit."""
-    if not planning.settings.lights_splats or not planning.shown:
-        return False
-    if get_shading_model(planning.settings.shading).is_diagnostic:
-        planning.skip("lighting of splats", f"{planning.settings.shading} shows how splats add up")
-        return False
-    if not any(isinstance(placed, Instance) for placed in planning.shown):
-        planning.skip("lighting of splats", "the scene has none")
-        return False
-    planning.has("LIT_SPLATS", "each splat is lit, and colours blend")
-    return True
+def rows(planning) -> int:
+    """Rows of the texture of lit splats, for those of the largest instance."""
+    are_all = planning.find(splat_lighting).is_wanted
+    lit = (kind.placed for kind in planning.surfels if are_all or kind.placed.is_transparent)
+    return max((row_count(largest_part(len(instance.surfels))) for instance in lit), default=1)
 
 
-def lights_samples(planning, kind: Kind) -> bool:
-    """Whether passes of this kind light samples: without this feature, and where polygons are among the splats."""
-    return not planning.find(wanted) or (kind == Kind.OPAQUE and bool(planning.scene.polygons))
-
-
-def model_in(planning, p: Pass) -> ShadingModel:
-    """The shading model of a pass: samples show blended colours unchanged."""
-    asked_for = get_shading_model(planning.settings.shading)
-    of_samples = p.kind in BLENDED and p.host in LIT_HOSTS | SPLAT_HOSTS
-    return get_shading_model("flat") if of_samples and not lights_samples(planning, p.kind) else asked_for
+def passes(planning):
+    """No passes; records whether splats are lit."""
+    is_wanted, why_not = planning.find(splat_lighting)
+    if is_wanted:
+        planning.has("LIT_SPLATS", "each splat is lit, and colours blend")
+    elif why_not:
+        planning.skip("lighting of splats", why_not)
+    return ()
 
 
 def each(planning) -> Pass | None:
     """The pass that lights the splats of an instance before they are summed."""
-    return light(planning, planning.surfels) if planning.find(wanted) else None
+    return light(planning) if planning.find(splat_lighting).is_wanted else None
 
 
-def light(planning, kinds) -> Pass:
+def light(planning) -> Pass:
     """Light the splats of one instance, or part of it; the texture has one texel per splat of the largest one."""
-    rows = max((row_count(largest_part(len(kind.placed.surfels))) for kind in kinds), default=1)
-    planning.facts["lit_rows"] = max(rows, planning.facts.get("lit_rows", 0))
-    own = Part("lit_splats", inputs=storage_samplers(planning.settings.storage), writes=(LIT,))
+    planning.find(rows)
+    own = Part("lit_splats", inputs=storage_samplers(planning), writes=(LIT,))
     return Pass("light_splats", "each splat is lit by itself", Host.LIT_SPLATS, run, (own,), Kind.REST)
 
 
 def parts(planning, p):
-    if not planning.find(wanted) or p.kind not in BLENDED:
+    if not planning.find(splat_lighting).is_wanted or p.kind not in BLENDED:
         return
     if p.host in SPLAT_HOSTS:
         yield Part("lit_splats", reads=(LIT,))

@@ -5,16 +5,16 @@ as much as the samples that they stand for."""
 from __future__ import annotations
 
 from ...hierarchy.nodes import MERGED_WEIGHT
+from ..passes.decisions import merging
 from ..plan.graph import Part
 from ..plan.hosts import SPLAT_HOSTS, Host
 from ..plan.planning import any_of
-from . import levels
 
 CONSTANTS = {"MERGED_WEIGHT": MERGED_WEIGHT}
 
 
 def is_present(planning) -> bool:
-    return levels.is_present(planning) or any_of(lambda i: i.is_merged, planning.surfels)
+    return bool(planning.find(merging)) or any_of(lambda i: i.is_merged, planning.surfels)
 
 
 def parts(planning, p):

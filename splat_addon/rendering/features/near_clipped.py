@@ -3,15 +3,15 @@
 
 from __future__ import annotations
 
+from ..passes.decisions import extent
 from ..plan.graph import Part
 from ..plan.hosts import Host
-from . import depth_format
 
 
 def passes(planning):
     """No passes; records whether there may be any."""
     if planning.shown:
-        if planning.find(depth_format.extent).reaches_near:
+        if planning.find(extent).reaches_near:
             planning.has("NEAR_CLIPPED", "splats that may reach the near plane are drawn in space")
         else:
             planning.skip("near-clipped splats", "none reaches the near plane")
@@ -19,7 +19,7 @@ def passes(planning):
 
 
 def is_present(planning) -> bool:
-    return planning.find(depth_format.extent).reaches_near
+    return planning.find(extent).reaches_near
 
 
 def parts(planning, p):

@@ -4,11 +4,11 @@
 from __future__ import annotations
 
 from ...normal_fields import NORMAL_STEP, share_of
+from ..passes.decisions import lights_samples
+from ..passes.drawing import pooled
 from ..plan.graph import Part
 from ..plan.hosts import BLENDED, SPLAT_HOSTS, Host, Kind
 from ..plan.planning import count, counted
-from . import lit_splats
-from .drawing import pooled
 
 CONSTANTS = {"NORMAL_STEP": NORMAL_STEP}
 
@@ -31,7 +31,7 @@ ARRIVES = {"normal_fields": _has_field}
 def _count(planning) -> int:
     """The number of instances with such normals, if any normal is looked at where splats have been added up."""
     settings, model = planning.settings, planning.model
-    is_lit = model.is_lit and lit_splats.lights_samples(planning, Kind.OPAQUE)
+    is_lit = model.is_lit and lights_samples(planning, Kind.OPAQUE)
     is_seen = is_lit or model.shows_normals or "normal" in settings.outputs or settings.lines is not None
     return count(_has_field, planning.surfels) if is_seen else 0
 

@@ -3,36 +3,21 @@
 
 from __future__ import annotations
 
-from ..identity import NUMBERED
+from ..passes.decisions import asked_numbers, have_rows, numbered, polygons_are_apart
+from ..passes.drawing import draw_splats
+from ..passes.rasterizers import rasterized
+from ..passes.textures import IDENTITY, POLYGON_IDENTITY, ROW_IDENTITY, VISIBILITY_DEPTH
 from ..plan.graph import Part, Pass, Texture
 from ..plan.hosts import BLENDED, RASTERIZED, Host, Kind
-from . import silhouettes, visibility
-from .drawing import draw_splats
-from .rasterizers import rasterized
 
-IDENTITY = Texture("identity", "RG32F")
-ROW_IDENTITY = Texture("row_identity", "RG32F", silhouettes.of_rows)
 LAYER_IDENTITY = Texture("layer_identity", "RG32F")
-POLYGON_IDENTITY = Texture("polygon_identity", "RG32F")
 EDGE_DEPTH = Texture("edge_depth", "DEPTH32F")
 _VARYINGS = (("flat", "float", "number"),)
 
 
-def asked_for(planning) -> tuple[str, ...]:
-    """The requested outputs that need numbers."""
-    return tuple(name for name in NUMBERED if name in planning.settings.outputs)
-
-
 def read_back(planning) -> tuple[Texture, ...]:
-    """The textures to read back: numbers of samples, and of polygons if they are separate."""
-    if not asked_for(planning) or not planning.shown:
-        return ()
-    first = ROW_IDENTITY if planning.find(silhouettes.have_rows) else IDENTITY
-    return (first, POLYGON_IDENTITY) if _polygons_apart(planning) else (first,)
-
-
-def _polygons_apart(planning) -> bool:
-    return bool(planning.scene.polygons) and planning.method.rasterizer == "point_sprite"
+    """The textures that are read back for a frame."""
+    return planning.find(numbered).textures
 
 
 def passes(planning):
@@ -40,9 +25,7 @@ def passes(planning):
     filtered."""
     if not planning.shown:
         return
-    names, method = asked_for(planning), planning.method
-    planning.facts["identity"] = read = read_back(planning)
-    planning.facts["identity_rows"] = silhouettes.rows_of(read[0]) if read else 1
+    names, method = asked_numbers(planning), planning.method
     if not names:
         planning.skip("identity", "no index or matte tells objects or materials apart")
         return
@@ -55,27 +38,27 @@ def passes(planning):
         why = f"{method.name} spreads splats past what is visible, which is somebody's"
         in_space = method.rasterizer == "object_space"
         words = ("edge_ids", "in_space") if in_space else ("edge_ids",)
-        own = Part("object_id", words, (visibility.DEPTH,), writes=(IDENTITY, EDGE_DEPTH), varyings=_VARYINGS)
+        own = Part("object_id", words, (VISIBILITY_DEPTH,), writes=(IDENTITY, EDGE_DEPTH), varyings=_VARYINGS)
         state = {"depth_test": True, "depth_write": True, "fragment_depth": in_space}
         host, parts = RASTERIZED[method.rasterizer], (own, *rasterized(planning))
         yield Pass("edge_ids", why, host, run_edges, parts, Kind.EDGE_IDS, state, adds=True)
 
 
 def is_present(planning) -> bool:
-    return bool(asked_for(planning))
+    return bool(asked_numbers(planning))
 
 
 def parts(planning, p):
     if p.host == Host.VISIBILITY and p.kind in BLENDED:
         texture = LAYER_IDENTITY if p.kind == Kind.LAYER else IDENTITY
-        if p.kind == Kind.OPAQUE and planning.find(silhouettes.have_rows):
+        if p.kind == Kind.OPAQUE and planning.find(have_rows):
             texture = ROW_IDENTITY
-        reason = f"{', '.join(asked_for(planning))} tell whose it is" if p.kind == Kind.OPAQUE else ""
+        reason = f"{', '.join(asked_numbers(planning))} tell whose it is" if p.kind == Kind.OPAQUE else ""
         called = ((texture, "identity"),)
         yield Part("object_id", writes=(texture,), called=called, varyings=_VARYINGS, reason=reason)
     if p.host == Host.POINT_SPRITE:
         yield Part("object_id", writes=(IDENTITY,), varyings=_VARYINGS)
-    if p.host == Host.POLYGONS and _polygons_apart(planning):
+    if p.host == Host.POLYGONS and polygons_are_apart(planning):
         yield Part("object_id", writes=(POLYGON_IDENTITY,), varyings=_VARYINGS)
     if p.host == Host.PEEL:
         yield Part("object_id", reads=(LAYER_IDENTITY,), updates=(IDENTITY,))

@@ -4,10 +4,12 @@
 
 from __future__ import annotations
 
+from ..passes.rasterizers import rasterized
+from ..passes.sums import depth_sum
+from ..passes.textures import SHADED
 from ..plan.graph import Part, Pass, Texture, fill, fill_all
 from ..plan.hosts import RASTERIZED, Host, Kind
-from . import gbuffer, lighting, lit_splats
-from .rasterizers import rasterized
+from . import gbuffer, lit_splats
 
 ACCUM = Texture("oit_accum")
 WEIGHT = Texture("oit_weight", "RG32F")
@@ -20,11 +22,10 @@ def passes_of_rest(planning, peeled: Texture, layers: Texture) -> tuple[Pass, ..
     rest = Part("oit", ("rest",), (lit_splats.LIT,), writes=(ACCUM, WEIGHT)), *rasterized(planning)
     state = gbuffer.state(planning) | {"depth_test": False}
     host = RASTERIZED[planning.method.rasterizer]
-    shade = Part("oit", reads=(ACCUM, WEIGHT, gbuffer.depth_sum(planning)), writes=(lighting.SHADED,))
-    put = Part("oit", reads=(lighting.SHADED, peeled), writes=(layers,), constants=samples)
-    peel = Part("oit", reads=(lighting.SHADED,), updates=(peeled,))
-    transparent = [kind for kind in planning.surfels if kind.placed.is_transparent]
-    run, each = lit_splats.run, lit_splats.light(planning, transparent)
+    shade = Part("oit", reads=(ACCUM, WEIGHT, depth_sum(planning)), writes=(SHADED,))
+    put = Part("oit", reads=(SHADED, peeled), writes=(layers,), constants=samples)
+    peel = Part("oit", reads=(SHADED,), updates=(peeled,))
+    run, each = lit_splats.run, lit_splats.light(planning)
     return (
         Pass("rest", "all that is left is added up", host, run, rest, Kind.REST, state, each=each),
         Pass("oit_shading", "its weights tell how much it hides", Host.OIT_SHADING, fill, (shade,), Kind.REST),

@@ -8,31 +8,17 @@ samples if silhouettes are filtered later, one for layers if there is transparen
 from __future__ import annotations
 
 from ..frame import HELD_BY
+from ..passes.decisions import layers, model_in
+from ..passes.sums import counts_splats, plane_sum
+from ..passes.textures import HANDED_ON, LAYERS, LAYERS_NORMAL, MAX_COLORS, PIXELS, SAMPLES
 from ..plan.frame_plan import FramePlan
-from ..plan.graph import Part, Texture, of_pixels
+from ..plan.graph import Part, Texture
 from ..plan.hosts import LIGHTING_HOSTS, LIT_HOSTS, SPLAT_HOSTS, Host, Kind
-from . import shadows
 
-#: Maximum number of colour textures in a target, Blender's limit.
-MAX_COLORS = 6
-PIXELS = {
-    name: Texture(name, "R32F" if name == "depth" else "RGBA32F", of_pixels)
-    for name in dict.fromkeys(texture for texture, _ in HELD_BY.values())
-}
-#: The textures that the last pass always writes.
-ALWAYS_WRITTEN = PIXELS["combined"], PIXELS["depth"]
-#: Textures for outputs of lit samples; the feature of the same name fills each.
-_HANDED_ON = tuple(name for name in PIXELS if name not in ("combined", "depth", "normal_coverage"))
-SAMPLES = {name: Texture(f"sample_{name}") for name in _HANDED_ON}
-LAYERS = {name: Texture(f"layers_{name}", per=of_pixels) for name in _HANDED_ON}
-NAMES = ("overdraw", "weight_output", "shadow_output", "normal_coverage", *_HANDED_ON)
-LAYERS_NORMAL = Texture("layers_normal", per=of_pixels)
+NAMES = ("overdraw", "weight_output", "shadow_output", "normal_coverage", *HANDED_ON)
 OVERDRAW = Texture("gbuffer_overdraw", "R32F", is_multisampled=True)
 
 _HOSTS = LIGHTING_HOSTS | SPLAT_HOSTS | {Host.RESOLVE, Host.LAYER, Host.BACKGROUND}
-
-#: Functions know an output by one name, whichever texture it is written to.
-CALLED = tuple((kind[name], f"out_{name}") for kind in (PIXELS, SAMPLES, LAYERS) for name in _HANDED_ON)
 
 
 def wanted(planning) -> tuple[str, ...]:
@@ -43,7 +29,7 @@ def wanted(planning) -> tuple[str, ...]:
 
 def handed_on(planning, by_layers: bool = False) -> tuple[str, ...]:
     """The textures that samples pass on. Layers do not pass on overdraw, which counts opaque splats only."""
-    names = [name for name in planning.find(wanted) if name in _HANDED_ON]
+    names = [name for name in planning.find(wanted) if name in HANDED_ON]
     if by_layers and "shadow" not in planning.settings.outputs:
         names = [name for name in names if name != "shadow_overdraw"]
     return tuple(names)
@@ -52,11 +38,6 @@ def handed_on(planning, by_layers: bool = False) -> tuple[str, ...]:
 def read_back(planning) -> tuple[Texture, ...]:
     """The textures that are read back for a frame."""
     return tuple(PIXELS[name] for name in planning.find(wanted))
-
-
-def counts_splats(planning) -> bool:
-    """Whether any output needs the number of splats per sample."""
-    return "overdraw" in planning.settings.outputs or bool(planning.model.sums)
 
 
 def passes(planning):
@@ -82,12 +63,12 @@ def passes(planning):
 
 def _count(planning, p):
     """The sum that counts splats: separate, or beside the planes that shadows compare depths with."""
-    beside = shadows.plane_sum(planning, p.kind)
+    beside = plane_sum(planning, p.kind)
     words, own = (("beside_planes",), ()) if beside else (("by_itself",), (OVERDRAW,))
     if p.host in SPLAT_HOSTS:
         yield Part("overdraw", words, writes=own)
     if p.host in LIT_HOSTS:
-        model = ("overdraw_model",) if planning.model.sums else ()
+        model = ("overdraw_model",) if model_in(planning, p).sums else ()
         yield Part("overdraw", (*words, *model), reads=(beside or OVERDRAW,))
 
 
@@ -99,7 +80,7 @@ def _found(planning):
 def parts(planning, p):
     if p.host not in _HOSTS:
         return
-    model, in_layer = planning.model, p.kind == Kind.LAYER
+    model, in_layer = model_in(planning, p), p.kind == Kind.LAYER
     is_counted = counts_splats(planning) and p.kind == Kind.OPAQUE
     if is_counted:
         yield from _count(planning, p)
@@ -108,7 +89,7 @@ def parts(planning, p):
     if p.host in LIT_HOSTS:
         if model.is_lit and planning.scene.lights and "shadow" in planning.settings.outputs:
             yield Part("shadow_output")
-    has_layers = p.host in (Host.SHADING, Host.RESOLVE) and bool(planning.facts.get("layers")) and not in_layer
+    has_layers = p.host in (Host.SHADING, Host.RESOLVE) and planning.find(layers).count > 0 and not in_layer
     if p.host in (Host.SHADING, Host.RESOLVE, Host.LAYER, Host.BACKGROUND):
         if "normal_coverage" in planning.find(_found)[0]:
             texture = LAYERS_NORMAL if in_layer else PIXELS["normal_coverage"]
@@ -119,9 +100,8 @@ def parts(planning, p):
 
 def _handing(planning, p, in_layer: bool, has_layers: bool):
     """The parts that pass outputs on from samples to pixels."""
-    has_material = (
-        ("has_material",) if planning.model.has_material and "diffuse_color" in planning.settings.outputs else ()
-    )
+    shows_metals = model_in(planning, p).has_material and "diffuse_color" in planning.settings.outputs
+    has_material = ("has_material",) if shows_metals else ()
     _, of_all, of_layers = planning.find(_found)
     names = of_layers if in_layer else of_all
     for name in names:

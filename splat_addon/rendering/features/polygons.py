@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..passes.decisions import model_in, nearest_state, shadows, splat_lighting
+from ..passes.drawing import draw_polygons
+from ..passes.sums import are_linked, differ, material_texels, summed_finishes
 from ..plan.graph import Part, Pass, Texture
 from ..plan.hosts import LIT_HOSTS, Host, Kind
-from . import depth_format, finish, lights, lit_splats, materials, shadows
-from .drawing import draw_polygons
 
 NAMES = ("polygons", "polygon_plane", "polygon_material")
 VALUES = {"contact": ("float", lambda tile: tile.view.contact)}
@@ -44,7 +45,7 @@ def passes(planning):
         writes=(COLOR, NORMAL, DEPTH),
         varyings=tuple(("smooth", *varying) for varying in varyings),
     )
-    yield Pass("polygons", why, Host.POLYGONS, run, (own,), state=depth_format.state(planning))
+    yield Pass("polygons", why, Host.POLYGONS, run, (own,), state=nearest_state(planning))
 
 
 def is_present(planning) -> bool:
@@ -53,21 +54,22 @@ def is_present(planning) -> bool:
 
 def parts(planning, p):
     if p.host == Host.POLYGONS:
-        yield from _drawn(planning)
+        yield from _drawn(planning, model_in(planning, p))
     if p.kind == Kind.OPAQUE and p.host == Host.LINES:
         yield from joined(planning)
     if p.kind == Kind.OPAQUE and p.host in LIT_HOSTS:
         # The paper blends what it has lit, by its own words a little worse than attributes.
-        apart = planning.settings.as_printed and not planning.find(lit_splats.wanted)
+        apart = planning.settings.as_printed and not planning.find(splat_lighting).is_wanted
         yield from joined(planning, (("polygon_blend", "apart"), ("polygon_light", "apart")) if apart else ())
-        differ, glow = materials.differ(planning)
-        if differ or lights.are_linked(planning):
+        model = model_in(planning, p)
+        have_own, glow = differ(planning, model)
+        if have_own or are_linked(planning, model):
             yield Part("polygon_material", reads=(MATERIAL,))
         if glow:
             yield Part("emission", reads=(EMISSION,))
-        if finish.summed(planning):
+        if summed_finishes(planning, model):
             yield Part("finish", reads=(FINISH,))
-        if planning.find(shadows.maps):
+        if planning.find(shadows).maps:
             yield Part("polygon_plane", reads=(PLANE,))
 
 
@@ -79,20 +81,20 @@ def joined(planning, how: tuple[tuple[str, str], ...] = ()):
         yield Part("polygons", reads=(COLOR, NORMAL), choices=(("polygon_share", share), *how), constants=same)
 
 
-def _drawn(planning):
+def _drawn(planning, model):
     """Textures that the pass writes beside colours and normals."""
-    differ, glow = materials.differ(planning)
-    drawn = {"inputs": ("materials",), "constants": materials.texels(planning)}
-    if differ:
+    have_own, glow = differ(planning, model)
+    drawn = {"inputs": ("materials",), "constants": planning.find(material_texels).constants}
+    if have_own:
         yield Part("materials", varyings=(("smooth", "vec3", "material"),), **drawn)
-    if differ or lights.are_linked(planning):
+    if have_own or are_linked(planning, model):
         yield Part("polygon_material", writes=(MATERIAL,))
     if glow:
         varyings = (("smooth", "vec3", "emission"),)
         yield Part("emission", ("gbuffer_emission",), writes=(EMISSION,), varyings=varyings, **drawn)
-    if finish.summed(planning):
+    if summed_finishes(planning, model):
         yield Part("finish", writes=(FINISH,), varyings=(("smooth", "vec4", "finish"),), **drawn)
-    if planning.find(shadows.maps):
+    if planning.find(shadows).maps:
         names = ("flat", "triangle_plane"), ("flat", "triangle_bulge"), ("smooth", "triangle_place")
         varyings = tuple((how, "vec3", name) for how, name in names)
         yield Part("polygon_plane", ("writes_polygon_plane",), writes=(PLANE,), varyings=varyings)

@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
-from ..plan.graph import Part, Pass, Texture, fill_all
+from ..passes.sums import depth_parts
+from ..passes.textures import COLOR_SUM, NORMAL_SUM, SAMPLE_DEPTHS
+from ..plan.graph import Part, Pass, fill_all
 from ..plan.hosts import Host, Kind
-from . import gbuffer, polygons
-
-DEPTHS = Texture("sample_depths", "R32F")
+from . import polygons
 
 
 def passes(planning):
@@ -17,10 +17,10 @@ def passes(planning):
     samples = planning.settings.multisampling
     own = Part(
         "sample_depths",
-        writes=(DEPTHS,),
+        writes=(SAMPLE_DEPTHS,),
         constants=(("MEAN_OF", samples),),
         choices=(("samples", "mean" if samples else "each"),),
     )
-    sums = gbuffer.depth_parts(planning, Kind.OPAQUE, reads=(gbuffer.COLOR, gbuffer.NORMAL))
+    sums = depth_parts(planning, Kind.OPAQUE, reads=(COLOR_SUM, NORMAL_SUM))
     why = "depths around each sample are looked at"
     yield Pass("sample_depths", why, Host.SAMPLE_DEPTHS, fill_all, (own, sums, *polygons.joined(planning)))

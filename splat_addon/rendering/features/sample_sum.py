@@ -3,9 +3,10 @@
 
 from __future__ import annotations
 
+from ..passes.decisions import has_backdrop
+from ..passes.textures import PIXELS
 from ..plan.graph import Part, Pass, Texture
 from ..plan.hosts import Host
-from . import outputs, world
 
 
 def _corner(tile):
@@ -28,8 +29,8 @@ def read_back(planning) -> tuple[Texture, ...]:
 
 
 def passes(planning):
-    if planning.is_added_up and (planning.shown or world.is_shown(planning)):
-        own = Part("sample_sum", reads=(outputs.PIXELS["combined"],), writes=(SUM,))
+    if planning.is_added_up and (planning.shown or planning.find(has_backdrop)):
+        own = Part("sample_sum", reads=(PIXELS["combined"],), writes=(SUM,))
         yield Pass("accumulate", "a view refines while it rests", Host.ACCUMULATE, run, (own,),
                    state={"blend": "add"}, adds=True)  # fmt: skip
 

@@ -6,18 +6,19 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+from ..passes.decisions import model_in, shadows
+from ..passes.drawing import pooled
+from ..passes.sums import are_lifted, plane_sum
 from ..plan.graph import Part, Pass, Texture
 from ..plan.hosts import BLENDED, LIT_HOSTS, SPLAT_HOSTS, Host, Kind
-from ..plan.planning import any_of
 from ..plan.repeats import Repeats
 from ..scene.camera import Camera
 from ..scene.light import pack_lights
 from ..shadows.contents import contents
-from ..shadows.maps import MAX_MAPS, atlas_size, map_ranges, pack_shadow_maps, shadow_maps
+from ..shadows.maps import MAX_MAPS, atlas_size, map_ranges, pack_shadow_maps
 from ..shadows.receivers import NEAREST_SHARE
 from ..view import View
-from . import hidden_objects, lit_splats, visibility
-from .drawing import pooled
+from . import hidden_objects, visibility
 
 #: Offset of polygons, in texels of a map: a filter reaches two texels, over which planes at 45 degrees differ by this.
 SETBACK = 2.0
@@ -30,31 +31,12 @@ CONSTANTS = {"NEAREST_SHARE": NEAREST_SHARE}
 
 
 def _of_atlas(plan, pixels: tuple[int, int]) -> tuple[int, int]:
-    return atlas_size(plan.facts["shadow_maps"])
+    return atlas_size(plan.find(shadows).maps)
 
 
 DEPTH = Texture("shadow_depth", "DEPTH32F", _of_atlas)
 #: How far cells of a map see, of one after the other.
 FARTHEST = Texture("farthest_lit", "R32F", lambda plan, pixels: hidden_objects.of_cells(*_of_atlas(plan, pixels)))
-#: Sum of the splats' geometric normals: depths are compared with their plane.
-PLANE = Texture("gbuffer_plane", "RG32F", is_multisampled=True)
-#: With room for the number of splats and for lifts, because targets have no room for another texture.
-PLANE_MORE = Texture("gbuffer_plane", "RGBA32F", is_multisampled=True)
-
-
-def maps(planning):
-    """The maps that lights need, in the order of the lights."""
-    if not planning.model.is_lit or not planning.settings.shadow_resolution:
-        planning.skip("shadows", "they are switched off, or nothing is lit")
-        return ()
-    resolution, by_splat = planning.settings.shadow_resolution, planning.find(lit_splats.wanted)
-    made, without = shadow_maps(planning.scene, planning.viewers, resolution, by_splat)
-    if without:
-        planning.skip(f"shadows of {without} lights", f"there is room for {MAX_MAPS} maps")
-    if not made:
-        planning.skip("shadows", "no light casts any that the picture shows")
-    return made
-
 
 #: Successive samples begin the spirals of their taps at fractions of a step that fill it evenly (the golden ratio).
 _TURN = (math.sqrt(5) - 1) / 2
@@ -62,7 +44,7 @@ _TURN = (math.sqrt(5) - 1) / 2
 VALUES = {"shadow_turn": ("float", lambda tile: (0.125 + _TURN * tile.camera.sample) % 1)}
 INPUTS = {
     "shadow_maps": lambda t: t.resources.data(
-        pack_shadow_maps(t.plan.facts["shadow_maps"], t.shared.shadow_views, t.camera, t.view.scale)
+        pack_shadow_maps(t.plan.find(shadows).maps, t.shared.shadow_views, t.camera, t.view.scale)
     ),
 }
 
@@ -79,51 +61,43 @@ ARRIVES = {"surfel_lifts": lambda instance: instance.surfels.lift is not None}
 
 
 def passes(planning):
-    made = planning.facts["shadow_maps"] = planning.find(maps) if planning.shown else ()
+    made, without, why_not = planning.find(shadows)
+    if without:
+        planning.skip(f"shadows of {without} lights", f"there is room for {MAX_MAPS} maps")
+    if why_not:
+        planning.skip("shadows", why_not)
     if made:
         casting = len({one.light for one in made})
         why = f"{casting} of {len(planning.scene.lights)} lights cast shadows, through {len(made)} maps"
         own = visibility.own_parts(planning, DEPTH)
         drawn = visibility.drawn("shadow_maps", why, own, planning, Kind.SHADOW)
         opaque = [k for k in planning.surfels if k.placed.casts_shadow and not k.placed.is_transparent]
-        each = hidden_objects.looking("hidden_casters", FARTHEST) if hidden_objects.may_hide(planning, opaque) else None
+        each = (
+            hidden_objects.looking("hidden_casters", DEPTH, FARTHEST)
+            if hidden_objects.may_hide(planning, opaque)
+            else None
+        )
         yield drawn._replace(run=run, once=_depends_on, each=each)
 
 
 def _depends_on(tile, p: Pass) -> tuple:
     """All that the maps depend on, but for the camera of the picture."""
-    of_scene = contents(tile.scene.table, tile.plan.facts["shadow_maps"], tile.levels)
+    of_scene = contents(tile.scene.table, tile.plan.find(shadows).maps, tile.levels)
     return p._replace(once=None, reason=""), tile.plan.choices, tile.settings, of_scene
 
 
 def is_present(planning) -> bool:
-    return bool(planning.facts["shadow_maps"])
-
-
-def plane_sum(planning, kind: Kind) -> Texture | None:
-    """The separate sum of planes; None if they are stored beside depths, or nothing needs them."""
-    from . import gbuffer, outputs
-
-    is_lit = planning.find(maps) and lit_splats.lights_samples(planning, kind)
-    if not is_lit or gbuffer.depths_are_apart(planning, kind):
-        return None
-    counts = kind == Kind.OPAQUE and outputs.counts_splats(planning)
-    return PLANE_MORE if counts or planning.find(_lifted) else PLANE
-
-
-def _lifted(planning) -> bool:
-    """Whether any surfels lie below the smooth surface of their shading normals."""
-    return any_of(lambda instance: instance.surfels.lift is not None, planning.surfels)
+    return bool(planning.find(shadows).maps)
 
 
 def parts(planning, p):
     apart = plane_sum(planning, p.kind)
     words, planes = (("planes_apart",), (apart,)) if apart else (("planes_beside_depths",), ())
-    lifted = planning.find(_lifted)
+    lifted = planning.find(are_lifted)
     inputs, words = (("surfel_lifts",), (*words, "lifted")) if lifted else ((), words)
     if p.host == Host.VISIBILITY and p.kind == Kind.SHADOW:
         yield Part("shadows", only="splats")
-    if not planning.model.is_lit:
+    if not model_in(planning, p).is_lit:
         return
     if p.host in SPLAT_HOSTS and p.kind in BLENDED:
         varyings = ("flat", "vec2", "splat_faces"), *((("flat", "float", "splat_lift"),) if lifted else ())
@@ -138,11 +112,11 @@ def run(tile, p: Pass):
     """Fill the atlas, one visibility pass per map. Parallel cameras store hardware depth, others depth / far."""
     target = tile.target(p)
     target.clear(depth=1.0)
-    for made, view in zip(tile.plan.facts["shadow_maps"], tile.shared.shadow_views, strict=True):
+    for made, view in zip(tile.plan.find(shadows).maps, tile.shared.shadow_views, strict=True):
         is_linear = not made.camera.is_orthographic
         seen = replace(
             tile.plan, linear_depth=is_linear, variants=frozenset(["linear"] if is_linear else []), samples=1,
-            multisamples=0, sample_shading=False, facts={**tile.plan.facts, "covering_depth": DEPTH},
+            multisamples=0, sample_shading=False,
         )  # fmt: skip
         view = _as_cast(view, made.camera)
         settings = tile.settings
@@ -167,6 +141,6 @@ def _as_cast(view: View, camera: Camera) -> View:
 
 def lights_texture(tile):
     """The scene's lights, with the maps of each."""
-    lights, made = tile.scene.lights, tile.plan.facts.get("shadow_maps")
+    lights, made = tile.scene.lights, tile.plan.find(shadows).maps
     ranges = map_ranges(made, len(lights)) if made else None
     return tile.resources.data(pack_lights(lights, tile.camera.world_to_view(), tile.view.scale, ranges))

@@ -15,9 +15,10 @@ of its samples, and so does the opaque picture behind them.
 
 from __future__ import annotations
 
+from ..passes.decisions import layers
+from ..passes.textures import LAYERS, LAYERS_NORMAL, SHADED, VISIBILITY_DEPTH
 from ..plan.graph import Loop, Part, Pass, Texture, fill_all, of_pixels
 from ..plan.hosts import SPLAT_HOSTS, Host, Kind
-from ..plan.planning import any_of
 from . import depth_bounds, gbuffer, lighting, oit, outputs, visibility
 
 #: Samples that are read on each side of a layer's.
@@ -34,36 +35,19 @@ COLOR = Texture("layers", per=of_pixels)
 COLOR_DEPTH = Texture("layers_depth", "R32F", of_pixels)
 
 
-def layers(planning) -> int:
-    """The maximum number of layers. Raises ValueError for hardware multisampling, whose samples have individual depths
-    but are shaded together."""
-    method, settings = planning.method, planning.settings
-    if not any_of(lambda instance: instance.is_transparent, planning.surfels):
-        planning.skip("transparent layers", "every surfel is opaque")
-        return 0
-    why_not = ""
-    if method.rasterizer == "point_sprite":
-        why_not = f"of {method.name} the nearest splat wins"
-    elif planning.model.is_diagnostic:
-        why_not = f"{planning.model.name} shows how splats add up"
-    elif settings.multisampling:
-        raise ValueError(
-            f"Transparent surfels cannot be peeled with multisampling {settings.multisampling}; set it to 0 and use "
-            "supersampling."
-        )
+def passes(planning):
+    if not planning.shown:
+        return
+    count, why_not = planning.find(layers)
     if why_not:
         planning.skip("transparency", f"surfels whose opacity is below 1 are drawn opaque: {why_not}")
-        return 0
-    return settings.layers
-
-
-def passes(planning):
-    count = planning.facts["layers"] = planning.find(layers) if planning.shown else 0
+    elif not count:
+        planning.skip("transparent layers", "every surfel is opaque")
     if not count:
         return
     cleared = PEELED, COLOR, COLOR_DEPTH
-    more = (outputs.LAYERS_NORMAL,) if "normal_coverage" in outputs.wanted(planning) else ()
-    more += tuple(outputs.LAYERS[name] for name in outputs.handed_on(planning, True))
+    more = (LAYERS_NORMAL,) if "normal_coverage" in outputs.wanted(planning) else ()
+    more += tuple(LAYERS[name] for name in outputs.handed_on(planning, True))
     yield Pass("start_layers", "nothing is peeled yet", None, start, (Part("transparency", writes=(*cleared, *more)),))
     peeled = count - planning.settings.blends_rest
     last = oit.passes_of_rest(planning, PEELED, COLOR) if planning.settings.blends_rest else ()
@@ -76,7 +60,7 @@ def _body(planning) -> tuple[Pass, ...]:
     found = visibility.drawn("visibility", "behind nearer layers, before what is opaque", own, planning, Kind.LAYER)
     occupied = Part("transparency", reads=(DEPTH,), writes=(OCCUPANCY,))
     bounds = depth_bounds.bounds(planning, "depths are compared in the shader", DEPTH, Kind.LAYER)
-    peel = Part("transparency", reads=(DEPTH, lighting.SHADED), updates=(PEELED,))
+    peel = Part("transparency", reads=(DEPTH, SHADED), updates=(PEELED,))
     return (
         found,
         Pass("layer_occupancy", ends, Host.LAYER_OCCUPANCY, fill_all, (occupied,), Kind.LAYER),
@@ -89,20 +73,20 @@ def _body(planning) -> tuple[Pass, ...]:
 
 
 def is_present(planning) -> bool:
-    return bool(planning.facts["layers"])
+    return planning.find(layers).count > 0
 
 
 def draws(tile, p: Pass, instance) -> bool:
     """Whether a pass draws an object: if there are layers, they draw transparent objects, and other passes the rest."""
-    return not tile.plan.facts["layers"] or instance.is_transparent is (p.kind in (Kind.LAYER, Kind.REST))
+    return not tile.plan.find(layers).count or instance.is_transparent is (p.kind in (Kind.LAYER, Kind.REST))
 
 
 def margin(planning) -> int:
-    return LAYER_MARGIN if planning.facts["layers"] else 0
+    return LAYER_MARGIN if planning.find(layers).count else 0
 
 
 def parts(planning, p):
-    opaque, tested = visibility.DEPTH, (PEELED, visibility.DEPTH)
+    opaque, tested = VISIBILITY_DEPTH, (PEELED, VISIBILITY_DEPTH)
     opacity = {"varyings": (("flat", "float", "opacity"),)}
     if p.kind == Kind.LAYER:
         if p.host == Host.VISIBILITY:

@@ -8,14 +8,14 @@ need none, because they let light through only beside what they show.
 
 from __future__ import annotations
 
+from ..passes.decisions import layers, shadows
 from ..plan.graph import Part
 from ..plan.hosts import LIGHTING_HOSTS, Host, Kind
 from ..plan.planning import any_of, count, counted
-from . import shadows, transparency
 
 
 def _casting(planning) -> int:
-    if not planning.shown or not planning.find(shadows.maps) or not planning.find(transparency.layers):
+    if not planning.find(shadows).maps or not planning.find(layers).count:
         return 0
     return count(lambda i: i.is_transparent and i.casts_shadow, planning.surfels)
 

@@ -6,21 +6,18 @@ from __future__ import annotations
 from collections.abc import Generator
 from dataclasses import replace
 
+from ..passes.decisions import depth_format, nearest_depth, nearest_state
+from ..passes.drawing import draw_polygons, draw_splats
+from ..passes.rasterizers import storage_samplers
+from ..passes.textures import rows_of
+from ..plan.frame_plan import VISIBILITY_ROWS
 from ..plan.graph import Part, Pass, Pause, Texture
 from ..plan.hosts import BLENDED, Host, Kind
 from ..view import Items
-from . import depth_format, hidden_objects, silhouettes
-from .drawing import draw_polygons, draw_splats, storage_samplers
+from . import hidden_objects
 
-DEPTH = Texture("visibility_depth", "DEPTH32F", is_multisampled=True)
-ROW_DEPTH = Texture("row_depth", "DEPTH32F", silhouettes.of_rows)
 NAMES = ("visibility", "sprite_visibility", "square_visibility")
 _OF_POLYGONS = Part("visibility", ("of_polygons",), inputs=("polygon_corners",), only="polygons")
-
-
-def nearest_depth(planning, depth: Texture = DEPTH, row_depth: Texture = ROW_DEPTH) -> Texture:
-    """The one of two textures that visibility writes: the second where there are more rows than samples."""
-    return row_depth if planning.find(silhouettes.have_rows) else depth
 
 
 def own_parts(planning, depth: Texture, has_polygons: bool = True) -> tuple[Part, ...]:
@@ -32,7 +29,7 @@ def own_parts(planning, depth: Texture, has_polygons: bool = True) -> tuple[Part
             writes=(depth,),
             varyings=(("smooth", "vec3", "place_depth"),),
         ),
-        Part("visibility", inputs=storage_samplers(planning.settings.storage), only="splats"),
+        Part("visibility", inputs=storage_samplers(planning), only="splats"),
         Part("visibility", varyings=(("smooth", "vec3", "across_offset"),), only="linear"),
         *((_OF_POLYGONS,) if has_polygons and planning.scene.polygons else ()),
     )
@@ -40,7 +37,7 @@ def own_parts(planning, depth: Texture, has_polygons: bool = True) -> tuple[Part
 
 def drawn(name: str, reason: str, own: tuple[Part, ...], planning, kind: Kind = Kind.OPAQUE) -> Pass:
     """A pass that finds the nearest surface."""
-    return Pass(name, reason, Host.VISIBILITY, run, own, kind, depth_format.state(planning))
+    return Pass(name, reason, Host.VISIBILITY, run, own, kind, nearest_state(planning))
 
 
 def passes(planning):
@@ -49,10 +46,10 @@ def passes(planning):
     if planning.method.rasterizer == "point_sprite":
         planning.skip("visibility", f"of {planning.method.name} the nearest splat wins, and nothing blends")
         return
-    why = f"splats may hide one another; {planning.find(depth_format.linear)[1]}"
+    why = f"splats may hide one another; {planning.find(depth_format).why}"
     seen = nearest_depth(planning)
     made = drawn("visibility", why, own_parts(planning, seen), planning)
-    yield made._replace(each=hidden_objects.search(planning, seen, silhouettes.rows_of(seen)))
+    yield made._replace(each=hidden_objects.search(planning, seen, rows_of(seen)))
 
 
 def parts(planning, p):
@@ -69,9 +66,9 @@ def run(tile, p: Pass):
     target = tile.target(p)
     tile.clear(target, color=0.0 if p.colors else None, depth=1.0)
     by_rows = tile
-    if silhouettes.rows_of(p.depth) > 1:
+    if rows_of(p.depth) > 1:
         # the first of a sample's rows goes through its centre
-        by_rows = replace(tile, rise=-(silhouettes.VISIBILITY_ROWS - 1) / target.size[1])
+        by_rows = replace(tile, rise=-(VISIBILITY_ROWS - 1) / target.size[1])
     polygons = tile.view.polygons if p.kind != Kind.LAYER else None
     for splats in hidden_objects.front_to_back(tile, p, tile.drawn_by(p)):
         yield from draw(by_rows, p, target, splats, polygons)

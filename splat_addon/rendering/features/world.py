@@ -7,10 +7,11 @@ import math
 
 import numpy as np
 
+from ..passes.decisions import has_backdrop, model_in
+from ..passes.textures import ALWAYS_WRITTEN, CALLED
 from ..plan.graph import Part, Pass, fill_all
 from ..plan.hosts import LIGHTING_HOSTS, Host, Kind
 from ..scene.picture_sun import REACH
-from . import outputs
 
 
 def _to_environment(tile) -> np.ndarray:
@@ -49,12 +50,12 @@ _WITHOUT_SUN = Part("world", choices=(("lighting_picture", "without_sun"),))
 
 def passes(planning):
     """An empty world is a pass of its own."""
-    planning.facts["has_backdrop"] = is_shown(planning)
+    is_shown = planning.find(has_backdrop)
     if not planning.shown:
         planning.skip("all other passes", "the scene has neither surfels nor polygons: the picture is its background")
-        if is_shown(planning):
+        if is_shown:
             samples = ("SAMPLES", planning.settings.supersampling)
-            own = Part("world", writes=outputs.ALWAYS_WRITTEN, constants=(samples,), called=outputs.CALLED)
+            own = Part("world", writes=ALWAYS_WRITTEN, constants=(samples,), called=CALLED)
             yield Pass("background", "the world is a picture", Host.BACKGROUND, fill_all, (own,))
     elif not planning.scene.environment:
         planning.skip("environment", "the world is even")
@@ -65,14 +66,13 @@ def is_present(planning) -> bool:
 
 
 def parts(planning, p):
-    if p.kind == Kind.OPAQUE and p.host in (Host.SHADING, Host.RESOLVE, Host.BACKGROUND) and is_shown(planning):
+    if (
+        p.kind == Kind.OPAQUE
+        and p.host in (Host.SHADING, Host.RESOLVE, Host.BACKGROUND)
+        and planning.find(has_backdrop)
+    ):
         yield _SHOWN
-    if p.host in LIGHTING_HOSTS and planning.model.has_world:
+    if p.host in LIGHTING_HOSTS and model_in(planning, p).has_world:
         yield _LIGHTS
         if planning.scene.picture_sun is not None:
             yield _WITHOUT_SUN
-
-
-def is_shown(planning) -> bool:
-    """Whether the background is a visible image."""
-    return planning.scene.seen_environment is not None and not planning.settings.transparent_film

@@ -10,7 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 
 from ..detail.history import History, no_history
-from ..features import CHECKS, MARGINS, PARTS, PASSES, READ_BACK, depth_format, lit_splats
+from ..features import CHECKS, MARGINS, PARTS, PASSES, READ_BACK
+from ..passes.decisions import depth_format
 from ..scene import Scene
 from ..scene.camera import Camera
 from ..settings import Settings
@@ -54,7 +55,7 @@ def plan(
     present = [parts for parts, is_present in PARTS if is_present(planning)]
     live = {texture for read_back in READ_BACK for texture in read_back(planning)}
     steps, _ = trimmed(changed(found, lambda p: _with_parts(planning, p, present)), live)
-    is_linear = planning.find(depth_format.linear)[0]
+    is_linear = planning.find(depth_format).is_linear
     made = FramePlan(
         tiles=tiles(part or (0, 0, *camera.size), tile_edge(planning)),
         samples=settings.supersampling,
@@ -70,7 +71,7 @@ def plan(
         variants=frozenset(["linear"] if is_linear else []),
         choices=_choices(settings),
         margin=sum(margin(planning) for margin in MARGINS),
-        facts=planning.facts,
+        found=planning.found,
         features=tuple(planning.features),
         skipped=tuple(planning.skipped),
     )
@@ -99,7 +100,6 @@ def _with_parts(planning: Planning, p: Pass, present: Iterable[Callable[[Plannin
     """A pass with the parts of all features that are present."""
     if p.host is None:
         return p
-    planning.model = lit_splats.model_in(planning, p)
     found = [part for parts in present for part in parts(planning, p)]
     reason = "; ".join([p.reason, *(part.reason for part in found if part.reason)])
     return p._replace(reason=reason, parts=(*p.parts, *found))

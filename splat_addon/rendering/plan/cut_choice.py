@@ -13,6 +13,7 @@ from ...hierarchy import Hierarchy, Sight, cut_blocks, entries_of
 from ..detail.levels import is_worth_preparing, sight
 from ..detail.steps import Steps, chosen_steps, make_steps, may_step
 from ..device.interface import Texture as DeviceTexture
+from ..passes.decisions import merging
 from ..scene import Instance, Placed
 from ..upload.cuts import Cut, whole_set
 from ..upload.parts import place_in_part
@@ -46,7 +47,7 @@ class CutChoice:
 
     def with_cuts(self, items: Items) -> list[DrawItem]:
         """Those that have levels of detail, of which each draws a cut of its own."""
-        if not self.plan.facts.get("levels"):
+        if not self.plan.find(merging):
             return []
         with_levels = items.table.of_kinds(lambda placed: self.levels(placed) is not None)
         rows = np.flatnonzero(with_levels & (self.steps_of(items) < 0))
@@ -56,7 +57,7 @@ class CutChoice:
         """(n,) the level of detail at which each instance is drawn whole; -1 if it has a cut of its own, or no
         levels."""
         found = np.full(len(items), -1)
-        if not self.plan.facts.get("levels"):
+        if not self.plan.find(merging):
             return found
         for kind in self.scene.table.kinds:
             placed = kind.placed
@@ -84,7 +85,7 @@ class CutChoice:
 
     def levels(self, instance: Placed) -> Hierarchy | None:
         """The hierarchy of an object's surfels, if the plan has levels of detail for it and it is there."""
-        if instance.shape not in self.plan.facts.get("levels", ()):
+        if instance.shape not in self.plan.find(merging):
             return None
         return self.resources.levels(instance.surfels, get_storage(self.plan.storage))
 

@@ -3,10 +3,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING, TypeVar
 
 from .graph import Loop, Pass, Step, Texture, each_pass
+
+if TYPE_CHECKING:
+    from .planning import Planning
+
+Found = TypeVar("Found")
 
 #: Samples above and below that the silhouette filter reads.
 FILTER_MARGIN = 2
@@ -25,7 +32,7 @@ class FramePlan:
     linear_depth: fragments write depth / far, because the hardware's depth would be too coarse.
     steps: passes and loops, in order. variants: those whose parts are in every program.
     choices: (name in paths of shaders, file). margin: pixels drawn around a tile and not kept.
-    facts: values that features computed while planning, for use when passes run.
+    found: what was decided while planning.
     features: (name, why), of what is present beside passes. skipped: (what, why), of what others would need.
     """
 
@@ -42,13 +49,19 @@ class FramePlan:
     variants: frozenset[str]
     choices: tuple[tuple[str, str], ...]
     margin: int
-    facts: dict[str, object]
+    found: Mapping[Callable[[Planning], object], object]
     features: tuple[tuple[str, str], ...]
     skipped: tuple[tuple[str, str], ...]
 
     def has(self, feature: str) -> bool:
         """Whether a feature is present."""
         return feature in (name for name, _ in self.features)
+
+    def find(self, fact: Callable[[Planning], Found]) -> Found:
+        """What was decided while planning, for passes that run. Raises RuntimeError for what nobody asked for then."""
+        if fact not in self.found:
+            raise RuntimeError(f"Nobody decided {fact.__name__} while this frame was planned; let its feature find it.")
+        return self.found[fact]
 
     @cached_property
     def passes(self) -> tuple[Pass, ...]:

@@ -238,5 +238,6 @@ def _live_before(p: Pass, live: set[Texture]) -> set[Texture]:
         live = live.difference(*[part.writes for part in p.parts])
     live = live.union(*[part.reads + part.updates + part.tests for part in p.parts])
     if p.each:
-        live = live.union(p.each.all("reads")).difference(p.each.fills)
+        # what it reads of the pass that runs it was not there before
+        live = live.union(p.each.all("reads")).difference(p.each.fills, p.fills if not p.adds else ())
     return live

@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
 from typing import TypeVar
 
 from ..detail.history import History
@@ -24,7 +25,6 @@ class Planning:
     around: sees all that any sample sees.
 
     shown: everything visible. surfels, polygons: the kinds of it.
-    facts: as in `FramePlan`; features add to them.
     """
 
     def __init__(
@@ -46,14 +46,18 @@ class Planning:
         self.surfels, self.polygons = (scene.table.kinds.of(kind) for kind in (Instance, PolygonInstance))
         self.features: list[tuple[str, str]] = []
         self.skipped: list[tuple[str, str]] = []
-        self.facts: dict[str, object] = {}
-        self._found: dict[Callable, object] = {}
+        self._found: dict[Callable[[Planning], object], object] = {}
 
     def find(self, fact: Callable[[Planning], Found]) -> Found:
-        """Return fact(self), computed once: a decision of one feature that several need."""
+        """Return fact(self), a decision, computed once. It is a frozen value."""
         if fact not in self._found:
             self._found[fact] = fact(self)
         return self._found[fact]
+
+    @property
+    def found(self) -> Mapping[Callable[[Planning], object], object]:
+        """What was decided."""
+        return MappingProxyType(dict(self._found))
 
     def has(self, feature: str, why: str) -> None:
         """Record that a feature is present, and why."""

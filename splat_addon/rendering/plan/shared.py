@@ -12,6 +12,7 @@ from ..depth_range import ClipRange, clip_range
 from ..detail.history import NOTHING, History
 from ..device.interface import Pipeline, Texture, texture_bytes
 from ..identity import Identities
+from ..passes.decisions import shadows
 from ..sample_views import SampleViews, clip_around
 from ..scene import Instance, Scene
 from ..scene.camera import Camera
@@ -93,7 +94,7 @@ class Shared:
     @cached_property
     def shadow_views(self) -> tuple[View, ...]:
         """The shadow casters as seen by the camera of each shadow map."""
-        return tuple(self._seen_by_light(made) for made in self.plan.facts["shadow_maps"])
+        return tuple(self._seen_by_light(made) for made in self.plan.find(shadows).maps)
 
     def _seen_by_light(self, made: ShadowMap) -> View:
         """What is drawn into a shadow map. The range of a sun's depths is that of all casters around, because its

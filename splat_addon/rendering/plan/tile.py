@@ -12,6 +12,7 @@ from ..device.interface import Pipeline, Target
 from ..device.interface import Texture as DeviceTexture
 from ..features import DRAWN, DRAWS, INPUTS, VALUES
 from ..methods import get_method
+from ..passes.decisions import has_backdrop
 from ..scene import Instance, Scene
 from ..scene.camera import Camera
 from ..settings import Settings
@@ -170,7 +171,7 @@ class TileContext(CutChoice):
 
         Of textures with samples it includes what filters read beside the pixels that they write.
         """
-        is_everywhere = self.plan.facts["has_backdrop"] or get_method(self.plan.method).widens
+        is_everywhere = self.plan.find(has_backdrop) or get_method(self.plan.method).widens
         if is_everywhere or self.view.bounds is None:
             return None
         writes_pixels = all(texture.per is of_pixels for texture in p.fills)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..detail import steps as detail
+from ..passes.decisions import merging
 from ..scene import Instance, Placed
 from ..scene.table import Kinds
 from ..upload.pools import MOST_POOLED, Pool, may_share
@@ -48,7 +49,7 @@ def _made_pool(tile: TileContext, kind: type) -> Pool | None:
 
 def kinds_in_pool(tile: TileContext, kind: type) -> list[Placed]:
     """One instance of each kind in the pool of surfels or of polygons: small ones of which there are few."""
-    kinds, levels = tile.scene.table.kinds.of(kind), tile.plan.facts.get("levels", ())
+    kinds, levels = tile.scene.table.kinds.of(kind), tile.plan.find(merging)
     numbers, triangles = kinds.find(_numbers_and_triangles)
     may = np.array(kinds.holds(may_share), bool) & (numbers < detail.LEAST_TOGETHER)
     rows = np.flatnonzero(may & ~np.array([k.placed.shape in levels for k in kinds] if levels else False))

@@ -15,7 +15,7 @@ from ..device.interface import Texture as DeviceTexture
 from ..plan.graph import Pass, Pause
 from ..plan.together import batches_of, pool_of, pooled_batches_of
 from ..plan.uniforms import DRAW, std140
-from ..upload.storages import STORAGES, get_storage
+from ..upload.storages import STORAGES
 from ..view import DrawItem, Items
 
 if TYPE_CHECKING:
@@ -163,7 +163,3 @@ def draw_block(
         stride,
     )
     return std140(DRAW, values)
-
-
-def storage_samplers(storage: str) -> tuple[str, ...]:
-    return get_storage(storage).samplers

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from ..plan.graph import Part
-from .drawing import storage_samplers
+from ..upload.storages import get_storage
 
 #: rasterizer -> what fragments are told of a splat's place
 _PLACE = {
@@ -24,8 +24,13 @@ _WIDENED = (("flat", "vec3", "depth_reach"),)
 _ATTRIBUTES = (("flat", "vec4", "color_weight"), ("flat", "vec3", "normal"))
 
 
+def storage_samplers(planning) -> tuple[str, ...]:
+    """The samplers of all programs that read splats."""
+    return get_storage(planning.settings.storage).samplers
+
+
 def rasterized(planning) -> tuple[Part, ...]:
     """Parts of every pass that draws splats with the method."""
     widened = _WIDENED if planning.method.widens else ()
     varyings = (*_PLACE[planning.method.rasterizer], *planning.method.varyings, *widened, *_ATTRIBUTES)
-    return (Part("rasterizers", inputs=storage_samplers(planning.settings.storage), varyings=varyings),)
+    return (Part("rasterizers", inputs=storage_samplers(planning), varyings=varyings),)
