@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from . import commands, manual, mesh_sampling_settings, operators, overrides, preferences, properties, translations
-from .conversion import bring_back, mesh_settings, prediction, source_record
+from .conversion import bring_back, mesh_settings, points_settings, prediction, source_record
 from .engine import final_render, render_engine, render_passes
 from .geometry import surfel_files
 from .ui import (
@@ -13,7 +13,6 @@ from .ui import (
     light_panels,
     object_panels,
     passes_panel,
-    points_panel,
     preset_panels,
     render_panels,
     report_panel,
@@ -39,6 +38,7 @@ MODULES = (
     world_panels,
     mesh_sampling_settings,
     mesh_settings,
+    points_settings,
     preferences,
     source_record,
     surfel_files,
@@ -47,7 +47,6 @@ MODULES = (
     operators,
     prediction,
     sidebar,
-    points_panel,
     commands,
     manual,
     translations,

@@ -23,13 +23,13 @@ ADD_CONVERSION_PRESET = "object.surfel_conversion_preset_add"
 UPDATE_SURFELS = "object.surfels_update"
 STORE_SURFELS = "object.surfels_to_file"
 SHOW_SURFELS = "view3d.surfels_show"
+SURFELS_OR_SOURCE = "object.surfels_or_source"
 
 #: The context of texts that mean something else in Blender, whose own translations come before an extension's.
 TEXTS = "Surfel Splatting"
 
 SIDEBAR_TAB = "Surfels"
-SIDEBAR_PANEL = "VIEW3D_PT_surfels_from_mesh"
-POINTS_PANEL = "VIEW3D_PT_surfels_from_points"
+SIDEBAR_PANEL = "VIEW3D_PT_surfels"
 
 #: Custom property of a surfel mesh: true if back faces are never visible from outside (`Surfels.is_solid`). Geometry
 #: Nodes drop it, which is right: what they make may be open.
@@ -71,8 +71,9 @@ MESH_SETTINGS = "surfel_splatting"
 #: What a surfel object was made from, and how: `object.surfel_record`.
 SURFEL_RECORD = "surfel_record"
 
-#: The sidebar's conversion settings: `scene.surfel_conversion`.
+#: The sidebar's conversion settings: `scene.surfel_conversion`, and those for points.
 CONVERSION_SETTINGS = "surfel_conversion"
+POINTS_SETTINGS = "surfel_points_conversion"
 
 
 class PointAttribute(NamedTuple):

@@ -9,7 +9,7 @@ from splat_addon.blender.conversion import automatic_density, prediction
 from splat_addon.blender.conversion.mesh_conversion import Choices, prepare, sample
 from splat_addon.blender.conversion.mesh_settings import choices
 from splat_addon.blender.ids import CONVERSION_SETTINGS
-from splat_addon.blender.ui.sidebar import prediction as sidebar_text
+from splat_addon.blender.ui.predicted import prediction as sidebar_text
 
 AUTOMATIC = Choices({"automatic": 1.0})
 

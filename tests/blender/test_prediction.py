@@ -9,8 +9,8 @@ from splat_addon.blender.conversion.gathering import gather
 from splat_addon.blender.conversion.mesh_conversion import Choices
 from splat_addon.blender.conversion.mesh_settings import choices
 from splat_addon.blender.ids import CONVERSION_SETTINGS
-from splat_addon.blender.ui.sidebar import prediction as sidebar_text
-from splat_addon.blender.ui.sidebar import prediction_text
+from splat_addon.blender.ui.predicted import prediction as sidebar_text
+from splat_addon.blender.ui.predicted import prediction_text
 from splat_addon.sampling import REDUCTIONS, predict_count
 
 PLAIN = Choices({"resolution": 16})

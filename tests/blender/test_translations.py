@@ -60,7 +60,7 @@ def test_blender_says_it_in_german():
     view.language = "de_DE" if "de_DE" in bpy.app.translations.locales else "de"
     try:
         assert bpy.app.translations.pgettext_iface("Convert to Surfels", OPERATOR) == "In Surfels umwandeln"
-        assert said("Update from {names}", names="Suzanne") == "Aus Suzanne aktualisieren"
+        assert said("No surfels of {name} yet", name="Suzanne") == "Noch keine Surfels von Suzanne"
         assert bpy.app.translations.pgettext_tip("The balance between speed and accuracy").startswith("Das V")
     finally:
         view.language = kept

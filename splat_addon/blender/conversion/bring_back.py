@@ -33,16 +33,20 @@ def bring_back() -> None:
     hidden = [owner for owner in bpy.data.objects if record_of(owner).is_hidden_source]
     needed = set().union(*map(sources_in, bpy.data.scenes)) if hidden else set()
     for source in hidden:
-        if source in needed:
-            continue
-        record = record_of(source)
+        if source not in needed:
+            show_source(source)
+
+
+def show_source(source: bpy.types.Object) -> None:
+    """Show a source that a conversion hid, unless it was disabled in renders before."""
+    record = record_of(source)
+    if record.is_hidden_source:
         record.is_hidden_source = False
-        if not record.was_disabled_in_renders:
-            source.hide_render = False
-        for scene in source.users_scene:
-            for view_layer in scene.view_layers:
-                if source.name in view_layer.objects:
-                    source.hide_set(False, view_layer=view_layer)
+        source.hide_render = record.was_disabled_in_renders
+    for scene in source.users_scene:
+        for view_layer in scene.view_layers:
+            if source.name in view_layer.objects:
+                source.hide_set(False, view_layer=view_layer)
 
 
 @unattended("Showing sources whose surfels are gone")

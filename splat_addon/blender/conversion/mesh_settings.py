@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
@@ -96,7 +97,7 @@ class ConversionProperties:
         name="Adaptive",
         description=(
             "Use larger surfels inside faces that are flat and look the same everywhere, as those of buildings and"
-            " machines. Turn it off to paint or sculpt surfels"
+            " machines"
         ),
         default=SamplingOptions.tolerance is not None,
     )
@@ -214,33 +215,93 @@ def chosen_density(properties: ConversionProperties) -> str:
 
 
 def draw_properties(layout: bpy.types.UILayout, properties: ConversionProperties) -> None:
-    """The settings in Blender's own style, for the sidebar and the redo panel."""
+    """All settings in Blender's own style, for the redo panel and the preferences."""
     layout.use_property_split = True
     layout.use_property_decorate = False
-    layout.prop(properties, "density")
-    layout.prop(properties, DENSITIES[properties.density].property)
-    layout.prop(properties, "join")
-    if not properties.join:
-        layout.row().prop(properties, "space", expand=True)
-    layout.prop(properties, "reduction")
-    if REDUCTIONS[properties.reduction.lower()].has_angle:
-        layout.prop(properties, "grazing_angle")
-    layout.prop(properties, "use_adaptive")
-    if properties.use_adaptive:
-        layout.prop(properties, "tolerance")
+    draw_density(layout, properties)
+    draw_looks(layout, properties)
+    layout.prop(properties, "follow")
+    draw_edges(layout, properties)
+    draw_advanced(layout, properties)
+    draw_once(layout, properties)
+
+
+def draw_looks(layout: bpy.types.UILayout, properties: ConversionProperties) -> None:
+    """Draw how the look of materials comes to the surfels."""
     layout.prop(properties, "bake_materials")
     layout.prop(properties, "texture_mapped")
-    layout.prop(properties, "normal_fields")
+
+
+def draw_edges(layout: bpy.types.UILayout, properties: ConversionProperties) -> None:
     layout.prop(properties, "clips_edges")
     if properties.clips_edges:
         layout.prop(properties, "crease_angle")
+
+
+def draw_density(layout: bpy.types.UILayout, properties: ConversionProperties) -> None:
+    layout.prop(properties, "density")
+    layout.prop(properties, DENSITIES[properties.density].property)
+
+
+def draw_advanced(layout: bpy.types.UILayout, properties: ConversionProperties) -> None:
+    """Draw what few conversions need."""
+    layout.prop(properties, "use_adaptive")
+    if properties.use_adaptive:
+        layout.prop(properties, "tolerance")
+    layout.prop(properties, "normal_fields")
     layout.prop(properties, "splat_size")
+    layout.prop(properties, "reduction")
+    if REDUCTIONS[properties.reduction.lower()].has_angle:
+        layout.prop(properties, "grazing_angle")
+
+
+def draw_once(layout: bpy.types.UILayout, properties: ConversionProperties) -> None:
+    """Draw what a conversion settles for good: an update cannot change it."""
+    layout.prop(properties, "join")
+    if not properties.join:
+        layout.row().prop(properties, "space", expand=True)
     layout.row().prop(properties, "source", expand=True)
-    layout.prop(properties, "follow")
+
+
+class _Quality(NamedTuple):
+    """A choice of density in the sidebar. pixels: per surfel, with automatic density."""
+
+    label: str
+    description: str
+    pixels: float
+
+
+QUALITIES = {
+    "DRAFT": _Quality("Draft", "A quarter of the surfels that the scene's camera needs, for a first look", 1.5),
+    "CAMERA": _Quality("Camera", "As many surfels as the scene's camera needs", 0.75),
+    "FINE": _Quality("Fine", "Four times as many, for fine textures and for coming closer later", 0.375),
+}
+
+
+def _quality(settings: SurfelConversionSettings) -> int:
+    """The number of the quality that the density amounts to, or of the last item if it is another one."""
+    pixels = settings.pixels if settings.density == "AUTOMATIC" else None
+    return next((k for k, one in enumerate(QUALITIES.values()) if one.pixels == pixels), len(QUALITIES))
+
+
+def _choose_quality(settings: SurfelConversionSettings, number: int) -> None:
+    if number < len(QUALITIES):
+        settings.density, settings.pixels = "AUTOMATIC", list(QUALITIES.values())[number].pixels
 
 
 class SurfelConversionSettings(ConversionProperties, bpy.types.PropertyGroup):
-    """The settings of the sidebar for the next conversion."""
+    """The settings of the sidebar for the next conversion, and those that a surfel object was converted with."""
+
+    quality: EnumProperty(
+        name="Quality",
+        description="How many surfels there are; under Advanced is a density for everything else",
+        items=[
+            *((name, one.label, one.description, k) for k, (name, one) in enumerate(QUALITIES.items())),
+            ("OTHER", "Other", "The density chosen under Advanced", len(QUALITIES)),
+        ],
+        get=_quality,
+        set=_choose_quality,
+    )
 
 
 register, unregister = with_property(bpy.types.Scene, CONVERSION_SETTINGS, SurfelConversionSettings)

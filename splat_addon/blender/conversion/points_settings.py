@@ -13,6 +13,9 @@ from mathutils import Vector
 from ...interchange import DEFAULT_FLATNESS
 from ...sampling.points import DEFAULT_CREASE_ANGLE, DEFAULT_NEIGHBOURS, ISOLATED_CHOICES, MAX_NEIGHBOURS
 from ..density_properties import splat_size_property
+from ..ids import POINTS_SETTINGS
+from ..registration import with_property
+from .mesh_settings import follow_property
 
 
 class PointsProperties:
@@ -83,8 +86,23 @@ class PointsProperties:
     )
 
 
-#: Settings that only Gaussian splats have.
-GAUSSIAN_NAMES = ("flatness",)
+class PointsConversionProperties(PointsProperties):
+    """A mix-in for the converting operator, and for the sidebar's settings of it."""
+
+    source: EnumProperty(
+        name="Source",
+        description="What happens to the points that were converted",
+        items=(
+            ("KEEP", "Keep", "Leave the points as they are; those of a mesh appear as black dots over the surfels"),
+            ("HIDE", "Hide", "Hide the points in the viewport and in renders, so that only the surfels are seen"),
+        ),
+        default="HIDE",
+    )
+    follow: follow_property()
+
+
+#: Properties that the operator and the scene share.
+POINTS_NAMES = (*PointsProperties.__annotations__, *PointsConversionProperties.__annotations__)
 
 #: Arguments of `surfels_from_points` that are properties of the same name; the angle is one only if creases are sought.
 _KEYWORDS = {"neighbours": int, "splat_size": float, "isolated": str.lower}
@@ -116,12 +134,30 @@ def draw_points_properties(layout: bpy.types.UILayout, properties: PointsPropert
     """Draw the settings of bare points in Blender's own style."""
     layout.use_property_split = True
     layout.use_property_decorate = False
-    for name in PointsProperties.__annotations__:
-        if name not in GAUSSIAN_NAMES and (name != "crease_angle" or properties.finds_creases):
-            layout.prop(properties, name)
+    draw_estimates(layout, properties)
+    draw_points_edges(layout, properties)
+    layout.prop(properties, "splat_size")
+
+
+def draw_estimates(layout: bpy.types.UILayout, properties: PointsProperties) -> None:
+    """Draw what decides whether the surfels of a scan are right."""
+    for name in ("facing", "neighbours", "isolated"):
+        layout.prop(properties, name)
+
+
+def draw_points_edges(layout: bpy.types.UILayout, properties: PointsProperties) -> None:
+    layout.prop(properties, "finds_creases")
+    if properties.finds_creases:
+        layout.prop(properties, "crease_angle")
 
 
 def draw_gaussian_properties(layout: bpy.types.UILayout, properties: PointsProperties) -> None:
     """Draw the settings of Gaussian splats."""
-    for name in GAUSSIAN_NAMES:
-        layout.prop(properties, name)
+    layout.prop(properties, "flatness")
+
+
+class SurfelPointsConversion(PointsConversionProperties, bpy.types.PropertyGroup):
+    """The settings of the sidebar for the next conversion of points."""
+
+
+register, unregister = with_property(bpy.types.Scene, POINTS_SETTINGS, SurfelPointsConversion)

@@ -7,7 +7,7 @@ Sources have no reference to their surfels, because that would keep deleted surf
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 import bpy
 from bpy.props import (
@@ -46,6 +46,10 @@ class SurfelRecord(bpy.types.PropertyGroup):
     mesh: PointerProperty(type=SurfelConversionSettings)
     points: PointerProperty(type=SurfelPointsSettings)
     unread: StringProperty(name="Not Sampled", description="Material inputs that could not be read, one per line")
+    hides_sources: BoolProperty(
+        name="Hides Its Sources",
+        description="The sources were hidden by the conversion, and are again when its surfels are shown",
+    )
     origin: FloatVectorProperty(name="Origin", description="Origin of the surfels, in the space of the first source")
     is_hidden_source: BoolProperty(
         name="Hidden for Surfels",
@@ -87,21 +91,42 @@ def sources_of(made: bpy.types.Object) -> list[bpy.types.Object]:
     return [each.object for each in record_of(made).sources if each.object is not None]
 
 
-def sources_in(scene: bpy.types.Scene) -> set[bpy.types.Object]:
-    """The sources of all surfel objects in a scene, in its background scenes, and in collections instanced there."""
-    found, seen, waiting = set(), set(), []
-    while scene is not None:
-        waiting.append(scene.objects)
+def sources_in(scene: bpy.types.Scene, shows: Callable[[bpy.types.Object], bool] | None = None) -> set:
+    """The sources of all surfel objects in a scene, in its background scenes, and in collections instanced there.
+
+    shows: whether one in the scene itself counts, by default all.
+    """
+    found, seen, waiting = set(), set(), [scene.objects]
+    while scene.background_set is not None:
         scene = scene.background_set
+        waiting.append(scene.objects)
+    judged = waiting[0] if shows else None
     while waiting:
-        for made in waiting.pop():
-            if made.type == "MESH":
-                found.update(sources_of(made))
+        objects = waiting.pop()
+        for made in objects:
+            sources = sources_of(made) if made.type == "MESH" else ()
+            if sources and (objects is not judged or shows(made)):
+                found.update(sources)
             placed = made.instance_collection if made.instance_type == "COLLECTION" else None
             if placed is not None and placed not in seen:
                 seen.add(placed)
                 waiting.append(placed.all_objects)
     return found
+
+
+def stood_in(depsgraph: bpy.types.Depsgraph) -> set[bpy.types.Object]:
+    """The sources that surfels replace in a view or a render: of those in the scene, whose surfels are not hidden."""
+
+    def shows(made: bpy.types.Object) -> bool:
+        shown = made.evaluated_get(depsgraph)
+        # an excluded collection's objects are evaluated too if they are parents
+        if not shown.is_evaluated or made.name not in depsgraph.view_layer.objects:
+            return False
+        if depsgraph.mode == "RENDER":
+            return not shown.hide_render
+        return shown.visible_get(view_layer=depsgraph.view_layer_eval)
+
+    return sources_in(depsgraph.scene.original, shows)
 
 
 def is_stood_in(owner: bpy.types.Object, sources: set[bpy.types.Object]) -> bool:

@@ -13,6 +13,7 @@ from .as_rendered import as_rendered, differing_levels
 from .bring_back import hide_source, is_disabled_in_renders
 from .changed_sources import remember_shapes
 from .following import follow, follow_visibility
+from .made_of import forget
 from .object_info import sentences_about
 from .placement import placed
 from .shape_following import follow_shape, is_bent
@@ -30,13 +31,15 @@ def tie(conversion, made: bpy.types.Object, kind: str, settings, follows: bool, 
     """
     notes = []
     keep_record(made, conversion.sources, kind, settings)
+    forget()
+    record_of(made).hides_sources = hides
     keep_unread(made, conversion)
     if follows:
         matrix_world, _ = placed(conversion.matrix_world, conversion.surfels.origin)
         unit = float(np.median(conversion.surfels.scales)) * min(map(abs, matrix_world.to_scale()))
         follow(made, conversion.sources[0], matrix_world, unit)
         notes = [*follow_visibility(made, conversion.sources), *tie_shape(conversion, made, kind)]
-    if all(map(_is_never_rendered, conversion.sources)):
+    if are_never_rendered(conversion.sources):
         made.hide_render, made.display_type = True, conversion.sources[0].display_type
         notes.append(f"{made.name!r} is disabled in renders, as its source is")
     for source in conversion.sources:
@@ -48,8 +51,9 @@ def tie(conversion, made: bpy.types.Object, kind: str, settings, follows: bool, 
     return notes
 
 
-def _is_never_rendered(source: bpy.types.Object) -> bool:
-    return is_disabled_in_renders(source) and "hide_render" not in animated_paths(source)
+def are_never_rendered(sources: list[bpy.types.Object]) -> bool:
+    """Whether renders show none of some objects, whatever the frame and apart from conversions that hid them."""
+    return all(is_disabled_in_renders(each) and "hide_render" not in animated_paths(each) for each in sources)
 
 
 def keep_unread(made: bpy.types.Object, conversion) -> None:

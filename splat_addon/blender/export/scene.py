@@ -22,7 +22,7 @@ from ...streaming import Stream
 from ...surfels import Surfels
 from ..conversion.changed_sources import ChangedSources
 from ..conversion.placement import finite_matrix
-from ..conversion.source_record import is_stood_in, sources_in
+from ..conversion.source_record import is_stood_in, stood_in
 from ..geometry.attributes import (
     Points,
     has_surfels,
@@ -228,7 +228,7 @@ class _Things:
         self._depsgraph, self._store, self._live_meshes = depsgraph, store, live_meshes
         self._light_sets, self._notes = light_sets, notes
         self._override = override_of(depsgraph)
-        self._stood_in = sources_in(depsgraph.scene.original)
+        self._stood_in = stood_in(depsgraph)
 
     def add_all(self) -> None:
         """Add all entries."""

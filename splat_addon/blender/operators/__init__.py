@@ -11,6 +11,7 @@ from . import (
     store_surfels,
     surfels_from_mesh,
     surfels_from_points,
+    surfels_or_source,
     update_surfels,
 )
 
@@ -23,6 +24,7 @@ MODULES = (
     import_file,
     render_preset,
     show_surfels,
+    surfels_or_source,
 )
 
 

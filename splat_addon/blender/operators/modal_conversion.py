@@ -54,7 +54,7 @@ class ModalConversion:
     def _report_already(self):
         self.report(
             {"ERROR"},
-            said("The selected objects are surfels already; use Update from Source to convert their sources again"),
+            said("The selected objects are surfels already; use Update to convert their sources again"),
         )
 
     def invoke(self, context, event):

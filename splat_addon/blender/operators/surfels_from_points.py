@@ -4,11 +4,10 @@
 from __future__ import annotations
 
 import bpy
-from bpy.props import EnumProperty
 
 from ..conversion.points_conversion import PointsBatch
 from ..conversion.points_settings import (
-    PointsProperties,
+    PointsConversionProperties,
     draw_gaussian_properties,
     draw_points_properties,
     keywords,
@@ -26,7 +25,7 @@ def selected_points(context: bpy.types.Context) -> list[bpy.types.Object]:
     return [source for source in context.selected_objects if has_points(source)]
 
 
-class OBJECT_OT_surfels_from_points(PointsProperties, ModalConversion, bpy.types.Operator):
+class OBJECT_OT_surfels_from_points(PointsConversionProperties, ModalConversion, bpy.types.Operator):
     """Make a surfel from every point of the selected point clouds and meshes. Missing normals, sizes and \
 directions are estimated from neighbouring points"""
 
@@ -34,15 +33,6 @@ directions are estimated from neighbouring points"""
     bl_label = "Convert Points to Surfels"
     bl_options = {"REGISTER", "UNDO", "PRESET"}  # noqa: RUF012 - Blender reads a set
 
-    source: EnumProperty(
-        name="Source",
-        description="What happens to the points that were converted",
-        items=(
-            ("KEEP", "Keep", "Leave the points as they are; those of a mesh appear as black dots over the surfels"),
-            ("HIDE", "Hide", "Hide the points in the viewport and in renders, so that only the surfels are seen"),
-        ),
-        default="HIDE",
-    )
     kind = "POINTS"
 
     @classmethod

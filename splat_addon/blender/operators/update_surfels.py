@@ -8,6 +8,7 @@ from bpy.props import BoolProperty
 
 from ..conversion.batch import Batch, ConversionBatch
 from ..conversion.following import follow_visibility, follows
+from ..conversion.made_of import surfels_of
 from ..conversion.mesh_settings import choices
 from ..conversion.points_conversion import PointsBatch
 from ..conversion.points_settings import keywords, viewpoint
@@ -19,12 +20,17 @@ from .menu_entry import with_menu_entry
 
 
 def updatable(context: bpy.types.Context) -> list[bpy.types.Object]:
-    """The selected surfel objects that know their sources."""
-    return [made for made in context.selected_objects if made.type == "MESH" and sources_of(made)]
+    """The selected surfel objects that know their sources, and those of this view layer whose source is selected."""
+    there, found = context.view_layer.objects, {}
+    for selected in context.selected_objects:
+        made = [selected] if selected.type == "MESH" and sources_of(selected) else surfels_of(selected)
+        found.update({each: None for each in made if each.name in there})
+    return list(found)
 
 
 class OBJECT_OT_surfels_update(bpy.types.Operator):
-    """Convert the current sources of the selected surfels again, with the settings of the first conversion"""
+    """Convert the sources of the selected surfels again, with the settings in the sidebar. It is also there while \
+the source is edited, painted or sculpted"""
 
     bl_idname = UPDATE_SURFELS
     bl_label = "Update Surfels from Source"
@@ -41,16 +47,20 @@ class OBJECT_OT_surfels_update(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context):
-        if context.mode != "OBJECT":
-            cls.poll_message_set(said("Surfels are updated in object mode; leave the current mode first"))
-        elif not updatable(context):
-            cls.poll_message_set(said("Select surfels that were converted from an object of this file"))
-        else:
+        if updatable(context):
             return True
+        cls.poll_message_set(said("Select surfels that were converted from an object of this file, or that object"))
         return False
 
     def execute(self, context):
-        updated = sum(self._update(made, context) for made in updatable(context))
+        mode = context.object.mode if context.object else "OBJECT"
+        if mode != "OBJECT":  # which writes what was edited to the mesh
+            bpy.ops.object.mode_set(mode="OBJECT")
+        try:
+            updated = sum(self._update(made, context) for made in updatable(context))
+        finally:
+            if mode != "OBJECT":
+                bpy.ops.object.mode_set(mode=mode)
         return {"FINISHED"} if updated else {"CANCELLED"}
 
     def _update(self, made: bpy.types.Object, context: bpy.types.Context) -> bool:

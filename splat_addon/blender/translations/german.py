@@ -167,10 +167,6 @@ GERMAN = {
     "Color": "Farbe",
     "Conversion in New Scenes": "Umwandlung in neuen Szenen",
     "Convert Points to Surfels": "Punkte in Surfels umwandeln",
-    "Convert the current sources of the selected surfels again, with the settings of the first conversion": (
-        "Die Quellen der ausgewählten Surfels, wie sie jetzt sind, noch einmal umwandeln, mit den "
-        "Einstellungen der ersten Umwandlung"
-    ),
     "Convert to Surfels": "In Surfels umwandeln",
     "Count": "Anzahl",
     "Coverage": "Bedeckung",
@@ -316,8 +312,6 @@ GERMAN = {
     "Float 16": "Float 16",
     "Float 32": "Float 32",
     "Follow Source": "Quelle folgen",
-    "From Meshes": "Aus Meshes",
-    "From Points and Files": "Aus Punkten und Dateien",
     "Gaussian Splats": "Gaussian Splats",
     "Graphics Device": "Grafikgerät",
     "Grazing Angle": "Streifwinkel",
@@ -859,13 +853,6 @@ GERMAN = {
     "Transparent": "Transparent",
     "Update Surfels from Source": "Surfels aus Quelle aktualisieren",
     "Use": "Verwenden",
-    (
-        "Use larger surfels inside faces that are flat and look the same everywhere, as those of buildings and"
-        " machines. Turn it off to paint or sculpt surfels"
-    ): (
-        "Größere Surfels innerhalb von Flächen verwenden, die eben sind und überall gleich aussehen, wie die von"
-        " Gebäuden und Maschinen. Zum Malen oder Modellieren mit Surfels abschalten"
-    ),
     "Vertex Group": "Vertexgruppe",
     "Viewport": "Ansichtsfenster",
     "Viewport Samples": "Samples der Ansicht",
@@ -1011,26 +998,18 @@ GERMAN = {
     "Select a point cloud, or a mesh that is not surfels already": (
         "Eine Punktwolke auswählen oder ein Mesh, das noch nicht aus Surfels besteht"
     ),
-    "Select objects with surfaces, in Object Mode": "Im Objektmodus Objekte mit Oberflächen auswählen",
-    "Select surfels that were converted from an object of this file": (
-        "Surfels auswählen, die aus einem Objekt dieser Datei umgewandelt wurden"
-    ),
     "Skipped {count:,} unusable surfels": "{count:,} unbrauchbare Surfels ausgelassen",
-    "The selected objects are surfels already; use Update from Source to convert their sources again": (
-        "Die ausgewählten Objekte sind schon Surfels; „Surfels aus Quelle aktualisieren“ wandelt ihre Quellen erneut um"
+    "The selected objects are surfels already; use Update to convert their sources again": (
+        "Die ausgewählten Objekte sind schon Surfels; „Aktualisieren“ wandelt ihre Quellen erneut um"
     ),
     "The surfels of {names} are in files of their own; only the coarsest were written": (
         "Die Surfels von {names} liegen in eigenen Dateien; nur die gröbsten wurden geschrieben"
-    ),
-    "Surfels are updated in object mode; leave the current mode first": (
-        "Surfels werden im Objektmodus aktualisiert; zuerst den jetzigen Modus verlassen"
     ),
     "Textures on the device: {megabytes:,.1f} MB": "Texturen auf dem Gerät: {megabytes:,.1f} MB",
     "The conversion to surfels was cancelled; nothing was changed": (
         "Die Umwandlung in Surfels wurde abgebrochen; nichts wurde geändert"
     ),
     "Time: {milliseconds:,.0f} ms": "Zeit: {milliseconds:,.0f} ms",
-    "Update from {names}": "Aus {names} aktualisieren",
     "{blur} needs more samples": "{blur} braucht mehr Samples",
     "{count:,} surfels of {objects} objects -> {path}": "{count:,} Surfels von {objects} Objekten -> {path}",
     "{count} warnings: see Render Properties > Last Picture": (
@@ -1041,4 +1020,70 @@ GERMAN = {
     "{path} cannot be written: {why}": "{path} kann nicht geschrieben werden: {why}",
     "≈ {count:,} surfels, spacing {low} to {high}": "≈ {count:,} Surfels, Abstand {low} bis {high}",
     "≈ {count:,} surfels, spacing {spacing}": "≈ {count:,} Surfels, Abstand {spacing}",
+    "A quarter of the surfels that the scene's camera needs, for a first look": (
+        "Ein Viertel der Surfels, die die Kamera der Szene braucht, für einen ersten Blick"
+    ),
+    "Advanced": "Erweitert",
+    "As many surfels as the scene's camera needs": "So viele Surfels, wie die Kamera der Szene braucht",
+    "Brushes need faces, and surfels have none": "Pinsel brauchen Flächen, und Surfels haben keine",
+    "Brushes need faces: paint or sculpt {name} and press Update": (
+        "Pinsel brauchen Flächen: {name} bemalen oder modellieren und „Aktualisieren“ drücken"
+    ),
+    (
+        "Convert the sources of the selected surfels again, with the settings in the sidebar. It is also there "
+        "while the source is edited, painted or sculpted"
+    ): (
+        "Die Quellen der ausgewählten Surfels noch einmal umwandeln, mit den Einstellungen in der Seitenleiste. "
+        "Geht auch, während die Quelle bearbeitet, bemalt oder modelliert wird"
+    ),
+    "Draft": "Entwurf",
+    "Edges": "Kanten",
+    "Files": "Dateien",
+    "Fine": "Fein",
+    "Four times as many, for fine textures and for coming closer later": (
+        "Viermal so viele, für feine Texturen und um später näher zu kommen"
+    ),
+    "Hide the surfels and show the object that they were made from": (
+        "Die Surfels ausblenden und das Objekt zeigen, aus dem sie gemacht wurden"
+    ),
+    "Hides Its Sources": "Blendet Quellen aus",
+    "How many surfels there are; under Advanced is a density for everything else": (
+        "Wie viele Surfels es sind; unter „Erweitert“ steht eine Dichte für alles andere"
+    ),
+    "Meshes need no conversion: choose the engine and press F12": (
+        "Meshes brauchen keine Umwandlung: die Engine wählen und F12 drücken"
+    ),
+    "No surfels of {name} yet": "Noch keine Surfels von {name}",
+    "Other": "Andere",
+    "Quality": "Qualität",
+    "Select a mesh or a scan": "Ein Mesh oder einen Scan auswählen",
+    "Select surfels or what they were made from, in Object Mode": (
+        "Im Objektmodus Surfels auswählen oder woraus sie gemacht wurden"
+    ),
+    "Select surfels that were converted from an object of this file, or that object": (
+        "Surfels auswählen, die aus einem Objekt dieser Datei umgewandelt wurden, oder dieses Objekt"
+    ),
+    "Show": "Zeigen",
+    "Show Surfels or Source": "Surfels oder Quelle zeigen",
+    "Show the surfels in place of the object that they were made from": (
+        "Die Surfels anstelle des Objekts zeigen, aus dem sie gemacht wurden"
+    ),
+    ("Show the surfels in place of their source, or the source in place of its surfels, in views and in renders"): (
+        "In Ansichten und Renderings die Surfels anstelle ihrer Quelle zeigen, oder die Quelle anstelle ihrer Surfels"
+    ),
+    "Surfels in a file: {name}": "Surfels in einer Datei: {name}",
+    "The density chosen under Advanced": "Die Dichte, die unter „Erweitert“ gewählt ist",
+    "The sources were hidden by the conversion, and are again when its surfels are shown": (
+        "Die Quellen wurden bei der Umwandlung ausgeblendet, und werden es wieder, wenn ihre Surfels gezeigt werden"
+    ),
+    "Update": "Aktualisieren",
+    (
+        "Use larger surfels inside faces that are flat and look the same everywhere, as those of buildings and machines"
+    ): (
+        "Größere Surfels innerhalb von Flächen verwenden, die eben sind und überall gleich aussehen, wie die von "
+        "Gebäuden und Maschinen"
+    ),
+    "What is seen in views and in renders": "Was in Ansichten und Renderings zu sehen ist",
+    "{count:,} points in {name}": "{count:,} Punkte in {name}",
+    "{count:,} surfels of {name}": "{count:,} Surfels von {name}",
 }

@@ -1,46 +1,60 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The Surfels tab in the 3D view's sidebar: conversion, with a prediction of its result."""
+"""The Surfels tab in the 3D view's sidebar. Its status, its large button and what is shown come first and keep their
+place; below are the settings of the conversion, with a prediction of its result."""
 
 from __future__ import annotations
 
 import bpy
 
-from ...faults import sentence_of
-from ...sampling import UNKNOWN_FLAT_EXTENTS
-from ..conversion.automatic_density import automatic_spacing
-from ..conversion.camera_density import without_camera
-from ..conversion.density_reason import Reason, sentences
-from ..conversion.gathering import frame_of, groups
-from ..conversion.mesh_conversion import Choices
-from ..conversion.mesh_settings import PROPERTY_NAMES, choices, draw_properties
-from ..conversion.prediction import Extent, known_extents
+from ..conversion.mesh_settings import (
+    PROPERTY_NAMES,
+    QUALITIES,
+    choices,
+    draw_advanced,
+    draw_density,
+    draw_edges,
+    draw_looks,
+    draw_once,
+)
+from ..conversion.points_settings import (
+    POINTS_NAMES,
+    draw_estimates,
+    draw_gaussian_properties,
+    draw_points_edges,
+)
 from ..conversion.source_record import record_of, sources_of
 from ..doors import register_classes_factory
-from ..export.object_detail import detail_of, finer
-from ..geometry.sources import is_surfel_object
+from ..geometry.scene_offset import scene_offset, shown
 from ..geometry.surfel_files import file_of
 from ..ids import (
     CONVERSION_SETTINGS,
+    EXPORT_PLY,
+    IMPORT_PLY,
     MESH_SETTINGS,
     OBJECT_SETTINGS,
+    POINTS_SETTINGS,
     SHOW_SURFELS,
     SIDEBAR_PANEL,
     SIDEBAR_TAB,
     STORE_SURFELS,
-    SURFELS_FROM_MESH,
     UPDATE_SURFELS,
 )
 from ..operators.show_surfels import shows_surfels
 from ..operators.surfels_from_mesh import selected_sources
-from ..operators.update_surfels import updatable
+from ..operators.surfels_or_source import draw_choice
 from ..spoken import said
+from .chosen import MESHES, NOTHING, POINTS, SURFELS, Chosen, chosen, status
+from .predicted import prediction
 from .preset_panels import VIEW3D_PT_surfel_conversion_presets
 from .wrapped_text import write
 
+#: The height of the large button, in those of others.
+_LARGE = 1.6
 
-class VIEW3D_PT_surfels_from_mesh(bpy.types.Panel):
+
+class VIEW3D_PT_surfels(bpy.types.Panel):
     bl_idname = SIDEBAR_PANEL
-    bl_label = "From Meshes"
+    bl_label = "Surfels"
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
     bl_category = SIDEBAR_TAB
@@ -49,90 +63,142 @@ class VIEW3D_PT_surfels_from_mesh(bpy.types.Panel):
         VIEW3D_PT_surfel_conversion_presets.draw_panel_header(self.layout)
 
     def draw(self, context):
-        settings = getattr(context.scene, CONVERSION_SETTINGS)
-        draw_properties(self.layout, settings)
-        sources = selected_sources(context)
-        if context.active_object in sources:
-            self.layout.prop(getattr(context.active_object, OBJECT_SETTINGS), "detail")
-        for k, line in enumerate(advice(context, sources, choices(settings)).splitlines()):
-            write(self.layout, line, context, "BLANK1" if k else "INFO")
-        row = self.layout.row()
-        # For surfels its poll is true, because Adjust Last Operation asks it before it undoes the conversion.
-        row.enabled = bool(sources)
-        button = row.operator(SURFELS_FROM_MESH, icon="OUTLINER_OB_POINTCLOUD")
-        for name in PROPERTY_NAMES:
-            setattr(button, name, getattr(settings, name))
-        self._draw_surfels(context)
-
-    def _draw_unread(self, sentences: list[str], context):
-        """Draw the material inputs that could not be read, and the button that bakes them."""
-        if not sentences:
-            return
-        box = self.layout.box()
-        for sentence in sentences:
-            write(box, sentence, context)
-        box.operator(UPDATE_SURFELS, text="Bake Materials", icon="RENDER_STILL").bake = True
-
-    def _draw_surfels(self, context):
-        """Draw the actions for the active object if it is surfels."""
-        if context.active_object in updatable(context):
-            names = ", ".join(source.name for source in sources_of(context.active_object))
-            self.layout.operator(UPDATE_SURFELS, text=said("Update from {names}", names=names), icon="FILE_REFRESH")
-            self._draw_unread(record_of(context.active_object).unread.splitlines(), context)
-        owner = context.active_object
-        if owner is not None and file_of(owner):
-            self.layout.prop(getattr(owner.data, MESH_SETTINGS), "file")
-        elif owner is not None and is_surfel_object(owner):
-            self.layout.operator(STORE_SURFELS, icon="FILE_NEW")
-        # Other engines show a surfel object as points.
-        if context.active_object is not None and is_surfel_object(context.active_object) and not shows_surfels(context):
-            self.layout.operator(SHOW_SURFELS, icon="SHADING_RENDERED")
+        layout, what = self.layout, chosen(context)
+        layout.label(text=status(what), icon=what.kind.icon)
+        _draw_button(layout, what, context)
+        layout.operator(SHOW_SURFELS, icon="SHADING_RENDERED", depress=shows_surfels(context))
+        draw_choice(layout, what.made if what.can_update and context.mode == "OBJECT" else None)
+        for line in advice(what, context):
+            write(layout, line, context, "INFO")
+        _draw_settings(layout, what, context)
+        _draw_files(layout, what, context)
 
 
-def advice(context: bpy.types.Context, sources: list[bpy.types.Object], asked: Choices) -> str:
-    """Lines about what the sources will become, or what to select. Nothing is missing while surfels are selected."""
-    if sources and context.mode == "OBJECT":
-        return prediction(context, sources, asked)
-    if context.mode == "OBJECT" and any(map(is_surfel_object, context.selected_objects)):
-        return ""
-    return said("Select objects with surfaces, in Object Mode")
+def advice(what: Chosen, context: bpy.types.Context) -> list[str]:
+    """What to do that the button does not say."""
+    if what.kind is SURFELS and what.lead == what.made and context.mode in _BRUSHES:
+        if what.source is None:
+            return [said("Brushes need faces, and surfels have none")]
+        return [said("Brushes need faces: paint or sculpt {name} and press Update", name=what.source.name)]
+    if what.kind in (MESHES, NOTHING):
+        return [said("Meshes need no conversion: choose the engine and press F12")]
+    return []
 
 
-def prediction(context: bpy.types.Context, sources: list[bpy.types.Object], asked: Choices) -> str:
-    """Lines about what the sources will become and why at that density, or why they cannot be converted."""
-    parts = groups(sources, context.active_object, asked.join)
-    extents = known_extents(parts, asked)
-    if extents is None:
-        return said("Counting …")
-    try:
-        found = [_density_of(*pair, asked, context.view_layer.depsgraph) for pair in zip(parts, extents, strict=True)]
-    except Exception as error:
-        return sentence_of(error)
-    text = prediction_text([extent.predict(f) for extent, (f, _) in zip(extents, found, strict=True)])
-    if asked.tolerance or any(extent.flat is UNKNOWN_FLAT_EXTENTS for extent in extents):
-        text = said("{count}, fewer where flat", count=text)
-    return "\n".join([text, *sentences(reason for _, reason in found if reason)])
+#: Modes of brushes that need faces.
+_BRUSHES = frozenset({"SCULPT", "PAINT_VERTEX", "PAINT_WEIGHT", "PAINT_TEXTURE"})
 
 
-def _density_of(sources, extent: Extent, asked: Choices, depsgraph) -> tuple[dict[str, float], Reason | None]:
-    """The density in the form that `Extent.predict` takes, and the reason if it is automatic. Raises ValueError."""
-    detail, frame = detail_of(sources[0]), frame_of(sources[0], asked.in_world_units)
-    if "automatic" not in asked.density:
-        return without_camera(finer(asked.density, detail), lambda: extent.surface, frame, depsgraph), None
-    what = asked.density["automatic"], lambda: extent.surface, extent.area, extent.longest_edge
-    spacing, reason = automatic_spacing(*what, frame, depsgraph, sources, detail, extent.flat.saved)
-    return {"spacing": spacing}, reason
+def settings_of(what: Chosen, context: bpy.types.Context):
+    """The settings that the button will use: those of the scene, or of the surfels that it updates; None if it is
+    disabled for good. The kind of surfels is in their record."""
+    if what.kind is SURFELS:
+        record = record_of(what.made)
+        return {"MESH": record.mesh, "POINTS": record.points}[record.kind] if what.can_update else None
+    return getattr(context.scene, POINTS_SETTINGS if what.kind is POINTS else CONVERSION_SETTINGS)
 
 
-def prediction_text(predictions: list[tuple[int, float]]) -> str:
-    """A text with the total number of surfels and their spacing."""
-    counts, spacings = zip(*predictions, strict=True)
-    if not sum(counts):
-        return said("Nothing to sample: no faces, or a density of 0")
-    low, high = (f"{bound(spacings):.3g}" for bound in (min, max))
-    if low == high:
-        return said("≈ {count:,} surfels, spacing {spacing}", count=sum(counts), spacing=low)
-    return said("≈ {count:,} surfels, spacing {low} to {high}", count=sum(counts), low=low, high=high)
+def _is_of_points(what: Chosen) -> bool:
+    return what.kind is POINTS or (what.kind is SURFELS and record_of(what.made).kind == "POINTS")
 
 
-register, unregister = register_classes_factory((VIEW3D_PT_surfels_from_mesh,))
+def _draw_button(layout: bpy.types.UILayout, what: Chosen, context: bpy.types.Context) -> None:
+    row = layout.row()
+    row.scale_y = _LARGE
+    if what.kind is SURFELS:
+        row.enabled = what.can_update
+        row.operator(UPDATE_SURFELS, text="Update", icon="FILE_REFRESH")
+        return
+    # For surfels its poll is true, because Adjust Last Operation asks it before it undoes the conversion.
+    row.enabled = what.kind is not NOTHING and context.mode == "OBJECT"
+    button = row.operator(what.kind.operator, icon="OUTLINER_OB_POINTCLOUD")
+    settings = settings_of(what, context)
+    for name in POINTS_NAMES if what.kind is POINTS else PROPERTY_NAMES:
+        setattr(button, name, getattr(settings, name))
+
+
+def _draw_settings(layout: bpy.types.UILayout, what: Chosen, context: bpy.types.Context) -> None:
+    settings = settings_of(what, context)
+    if settings is None:
+        return
+    is_of_points, is_made = _is_of_points(what), what.kind is SURFELS
+    if not is_of_points:
+        _draw_quality(layout, what, settings, context)
+    layout = layout.column()
+    layout.use_property_split = True
+    layout.use_property_decorate = False
+    if is_of_points:
+        draw_estimates(layout, settings)
+    if not is_made:
+        layout.prop(settings, "follow")
+    if not is_of_points:
+        draw_looks(layout, settings)
+        _draw_unread(layout, what, context)
+    header, edges = layout.panel("surfels_edges", default_closed=True)
+    header.label(text="Edges")
+    if edges:
+        (draw_points_edges if is_of_points else draw_edges)(edges, settings)
+    header, advanced = layout.panel("surfels_advanced", default_closed=True)
+    header.label(text="Advanced")
+    if advanced:
+        (_draw_advanced_of_points if is_of_points else _draw_advanced)(advanced, what, settings)
+
+
+def _draw_advanced(layout: bpy.types.UILayout, what: Chosen, settings) -> None:
+    draw_density(layout, settings)
+    if what.lead is not None:
+        layout.prop(getattr(what.source or what.lead, OBJECT_SETTINGS), "detail")
+    draw_advanced(layout, settings)
+    if what.kind is not SURFELS:
+        draw_once(layout, settings)
+
+
+def _draw_advanced_of_points(layout: bpy.types.UILayout, what: Chosen, settings) -> None:
+    layout.prop(settings, "splat_size")
+    draw_gaussian_properties(layout, settings)
+    if what.kind is not SURFELS:
+        layout.row().prop(settings, "source", expand=True)
+
+
+def _draw_quality(layout: bpy.types.UILayout, what: Chosen, settings, context: bpy.types.Context) -> None:
+    row = layout.row(align=True)
+    for name in QUALITIES:
+        row.prop_enum(settings, "quality", name)
+    if what.kind is NOTHING or context.mode != "OBJECT":
+        return
+    sources = sources_of(what.made) if what.kind is SURFELS else selected_sources(context)
+    for line in prediction(context, sources, choices(settings)).splitlines():
+        write(layout, line, context, "BLANK1")
+
+
+def _draw_unread(layout: bpy.types.UILayout, what: Chosen, context: bpy.types.Context) -> None:
+    """Draw the material inputs that could not be read, and the button that bakes them."""
+    sentences = record_of(what.made).unread.splitlines() if what.kind is SURFELS else []
+    if not sentences:
+        return
+    box = layout.box()
+    for sentence in sentences:
+        write(box, sentence, context)
+    box.operator(UPDATE_SURFELS, text="Bake Materials", icon="RENDER_STILL").bake = True
+
+
+def _draw_files(layout: bpy.types.UILayout, what: Chosen, context: bpy.types.Context) -> None:
+    header, files = layout.panel("surfels_files", default_closed=True)
+    header.label(text="Files")
+    if files is None:
+        return
+    if what.made is not None and file_of(what.made):
+        files.prop(getattr(what.made.data, MESH_SETTINGS), "file")
+    elif what.made is not None:
+        files.operator(STORE_SURFELS, icon="FILE_NEW")
+    row = files.row(align=True)
+    # "Invoke" asks for the file; a sidebar's own way would run at once.
+    row.operator_context = "INVOKE_DEFAULT"
+    row.operator(IMPORT_PLY, icon="IMPORT")
+    row.operator(EXPORT_PLY, icon="EXPORT")
+    offset = scene_offset(context.scene)
+    if offset.any():
+        write(files, said("Offset of the coordinates: {offset}", offset=shown(offset)), context, "INFO")
+
+
+register, unregister = register_classes_factory((VIEW3D_PT_surfels,))

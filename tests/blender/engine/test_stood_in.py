@@ -15,9 +15,29 @@ def square(add_camera, add_square):
 
 
 def test_a_converted_object_is_not_drawn_beside_its_surfels(square, convert, picture):
+    convert(resolution=8)
+    assert picture().any()
+    drawn = final_render.last_frame_stats
+    assert drawn["splats_drawn"] > 0 and drawn["polygons"] == 0
+
+
+@pytest.mark.parametrize("how", ["hide_render", "collection"])
+def test_it_is_drawn_again_while_its_surfels_are_hidden(square, convert, picture, scene, how):
+    """Their parent stays in the depsgraph, although it is hidden."""
+    before = picture()
     (made,) = convert(resolution=8)
-    made.hide_render = True
-    assert not picture().any()
+    bpy.data.objects.new("child", None).parent = made
+    scene.collection.objects.link(bpy.data.objects["child"])
+    if how == "hide_render":
+        made.hide_render = True
+    else:
+        hidden = bpy.data.collections.new("hidden")
+        scene.collection.children.link(hidden)
+        for each in made.users_collection:
+            each.objects.unlink(made)
+        hidden.objects.link(made)
+        bpy.context.view_layer.layer_collection.children["hidden"].exclude = True
+    assert np.array_equal(picture(), before)
 
 
 def test_it_is_drawn_again_without_them(square, convert, picture):

@@ -230,10 +230,10 @@ def test_unregistering_takes_the_operators_and_the_panel_away():
     try:
         assert "surfels" not in dir(bpy.ops.import_scene) and "surfels_ply" not in dir(bpy.ops.export_scene)
         assert "surfels_from_points" not in dir(bpy.ops.object)
-        assert not hasattr(bpy.types, ids.POINTS_PANEL)
+        assert not hasattr(bpy.types, ids.SIDEBAR_PANEL)
     finally:
         splat_addon.register()
-    assert hasattr(bpy.types, ids.POINTS_PANEL)
+    assert hasattr(bpy.types, ids.SIDEBAR_PANEL)
 
 
 def test_a_file_dropped_on_the_3d_view_is_imported_by_the_same_operator():

@@ -231,7 +231,7 @@ def test_a_count_is_that_of_an_object_without_more_detail(cube, convert, surfels
 
 def test_surfels_are_not_converted_again(cube, convert):
     convert(resolution=4)
-    with pytest.raises(RuntimeError, match="surfels already; use Update from Source"):
+    with pytest.raises(RuntimeError, match="surfels already; use Update"):
         convert(resolution=4)
     cube.select_set(True)
     assert [made.name for made in convert(resolution=4)] == ["Box surfels.001"]

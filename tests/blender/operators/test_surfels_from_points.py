@@ -175,7 +175,7 @@ def test_one_source_without_points_does_not_stop_the_others(scan, add_mesh, conv
 
 def test_surfels_are_not_converted_again(scan, convert_points):
     convert_points()
-    with pytest.raises(RuntimeError, match="surfels already; use Update from Source"):
+    with pytest.raises(RuntimeError, match="surfels already; use Update"):
         convert_points()
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from splat_addon.blender.conversion import prediction
 from splat_addon.blender.conversion.mesh_conversion import Choices
-from splat_addon.blender.ui.sidebar import prediction as sidebar_text
+from splat_addon.blender.ui.predicted import prediction as sidebar_text
 
 
 def add_cube(name, location=(0, 0, 0), scale=(1, 1, 1), rotation=(0, 0, 0), color=None):
