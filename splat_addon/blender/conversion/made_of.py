@@ -7,10 +7,12 @@ from __future__ import annotations
 import bpy
 import numpy as np
 
-from .source_record import sources_of
+from .source_record import record_of, sources_of
 
-#: session_uid of each object in the file when it was searched, and of a source -> the places of its surfels among them.
+#: session_uid of each object in the file when it was searched; the places among them of those that were made of others;
+#: session_uid of a source -> the places of its surfels.
 _objects = np.empty(0, np.int32)
+_converted: list[int] = []
 _made: dict[int, list[int]] = {}
 
 
@@ -20,10 +22,10 @@ def surfels_of(source: bpy.types.Object) -> list[bpy.types.Object]:
     return [bpy.data.objects[place] for place in _made.get(source.session_uid, ())]
 
 
-def surfels_with_sources() -> list[bpy.types.Object]:
-    """All surfel objects in the file that know their sources."""
+def converted() -> list[bpy.types.Object]:
+    """All surfel objects in the file that were made of others, which may be gone."""
     _search_if_changed()
-    return [bpy.data.objects[place] for place in sorted(set().union(*_made.values()))]
+    return [bpy.data.objects[place] for place in _converted]
 
 
 def forget() -> None:
@@ -40,6 +42,7 @@ def _search_if_changed() -> None:
         return
     _objects = found
     _made.clear()
-    for place, made in enumerate(bpy.data.objects):
-        for source in sources_of(made) if made.type == "MESH" else ():
+    _converted[:] = [k for k, each in enumerate(bpy.data.objects) if each.type == "MESH" and record_of(each).sources]
+    for place in _converted:
+        for source in sources_of(bpy.data.objects[place]):
             _made.setdefault(source.session_uid, []).append(place)

@@ -15,6 +15,7 @@ from .changed_sources import remember_shapes
 from .following import follow, follow_visibility
 from .made_of import forget
 from .object_info import sentences_about
+from .other_engines import show_one
 from .placement import placed
 from .shape_following import follow_shape, is_bent
 from .source_record import keep_record, record_of
@@ -48,6 +49,7 @@ def tie(conversion, made: bpy.types.Object, kind: str, settings, follows: bool, 
         getattr(source, OBJECT_SETTINGS).render_as = "SCENE"
         if hides:
             hide_source(source)
+    show_one(made, bpy.context.view_layer)
     return notes
 
 

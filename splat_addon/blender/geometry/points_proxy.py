@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shows a surfel object outside this engine: a modifier turns its surfels into points with their size and colour.
+"""Shows a surfel object outside this engine: a modifier turns its surfels into points with their size and colour, or
+with none where its source is seen there.
 
 This makes it visible and clickable in Solid, Material Preview, EEVEE and Cycles, where a mesh of vertices alone is only
 black dots or invisible. The points share the mesh's attributes, so they cost no memory, and the engine reads the
@@ -18,19 +19,30 @@ from .node_groups import known_group, new_modifier_group, uses_group
 from .node_maths import enabled
 from .reading import readable_mesh
 
-#: Custom property of the node group, which distinguishes our groups from others of the same name.
-_MAKE, _VERSION = "surfels_points", 1
+#: Custom property of the node group, which distinguishes our groups from others of the same name. Its values: of one
+#: whose points have the surfels' sizes, and of one whose points have none, so that only this engine sees them.
+_MAKE, _SIZED, _SIZELESS = "surfels_points", 1, 2
+#: The same of the material.
+_VERSION = 1
 
 
 def show_as_points(made: bpy.types.Object) -> bpy.types.Modifier:
     """Give a surfel object the modifier, which stays behind all modifiers added later."""
     modifier = made.modifiers.new(POINTS_GROUP, "NODES")
-    modifier.node_group = known_group(_MAKE, _VERSION) or _new_group()
+    modifier.node_group = _group(_SIZED)
     # In edit mode the vertices themselves must be visible.
     modifier.show_in_editmode = False
     modifier.use_pin_to_last = True
     modifier.show_expanded = False
     return modifier
+
+
+def let_others_see(made: bpy.types.Object, is_seen: bool) -> None:
+    """Show a surfel object to other engines and shading modes, or not. This engine shows it in any case."""
+    version = _SIZED if is_seen else _SIZELESS
+    for modifier in filter(is_points_modifier, made.modifiers):
+        if modifier.node_group[_MAKE] != version:
+            modifier.node_group = _group(version)
 
 
 def shows_as_points(owner: bpy.types.Object) -> bool:
@@ -73,8 +85,12 @@ def is_points_modifier(modifier: bpy.types.Modifier) -> bool:
     return uses_group(modifier, _MAKE)
 
 
-def _new_group() -> bpy.types.NodeTree:
-    group = new_modifier_group(POINTS_GROUP, _MAKE, _VERSION)
+def _group(version: int) -> bpy.types.NodeTree:
+    return known_group(_MAKE, version) or _new_group(version)
+
+
+def _new_group(version: int) -> bpy.types.NodeTree:
+    group = new_modifier_group(POINTS_GROUP, _MAKE, version)
     material = group.interface.new_socket("Material", in_out="INPUT", socket_type="NodeSocketMaterial")
     material.default_value = _material()
     new, link = group.nodes.new, group.links.new
@@ -87,12 +103,16 @@ def _new_group() -> bpy.types.NodeTree:
     link(neighbours.outputs["Face Count"], enabled(is_loose.inputs, "A"))
     enabled(is_loose.inputs, "B").default_value = 0
 
-    radius, points = new("GeometryNodeInputNamedAttribute"), new("GeometryNodeMeshToPoints")
-    radius.data_type = "FLOAT"
-    radius.inputs["Name"].default_value = POINT_ATTRIBUTES["radius"].name
+    points = new("GeometryNodeMeshToPoints")
     link(kinds.outputs["Mesh"], points.inputs["Mesh"])
     link(is_loose.outputs[0], points.inputs["Selection"])
-    link(enabled(radius.outputs, "Attribute"), points.inputs["Radius"])
+    if version == _SIZELESS:
+        points.inputs["Radius"].default_value = 0.0
+    else:
+        radius = new("GeometryNodeInputNamedAttribute")
+        radius.data_type = "FLOAT"
+        radius.inputs["Name"].default_value = POINT_ATTRIBUTES["radius"].name
+        link(enabled(radius.outputs, "Attribute"), points.inputs["Radius"])
     painted = new("GeometryNodeSetMaterial")
     link(points.outputs[0], painted.inputs["Geometry"])
     link(given.outputs["Material"], painted.inputs["Material"])

@@ -64,3 +64,12 @@ def test_neither_is_one_of_a_background_scene(square, scene, convert, tmp_path):
     bpy.ops.render.render(write_still=True, scene=shot.name)
     drawn = final_render.last_frame_stats
     assert drawn["splats_drawn"] > 0 and drawn["polygons"] == 0
+
+
+def test_what_other_engines_see_of_surfels_changes_no_picture(square, convert, picture):
+    (made,) = convert(resolution=8)
+    groups, pictures = [made.modifiers[0].node_group], [picture()]
+    square.hide_set(True)
+    bpy.context.view_layer.update()
+    groups.append(made.modifiers[0].node_group)
+    assert groups[0] != groups[1] and np.array_equal(pictures[0], picture())
