@@ -29,7 +29,7 @@ from ..geometry.surfel_files import file_of
 from ..ids import (
     CONVERSION_SETTINGS,
     EXPORT_PLY,
-    IMPORT_PLY,
+    IMPORT_FILE,
     MESH_SETTINGS,
     OBJECT_SETTINGS,
     POINTS_SETTINGS,
@@ -194,7 +194,7 @@ def _draw_files(layout: bpy.types.UILayout, what: Chosen, context: bpy.types.Con
     row = files.row(align=True)
     # "Invoke" asks for the file; a sidebar's own way would run at once.
     row.operator_context = "INVOKE_DEFAULT"
-    row.operator(IMPORT_PLY, icon="IMPORT")
+    row.operator(IMPORT_FILE, icon="IMPORT")
     row.operator(EXPORT_PLY, icon="EXPORT")
     offset = scene_offset(context.scene)
     if offset.any():
