@@ -32,6 +32,8 @@ QUICK = {"resolutions": [64], "size": 64}
 MODELS = ("armadillo.obj.gz", "bunny.obj.gz")
 ONE = Settings(supersampling=1, shading="phong", shadow_resolution=0, outputs=("color", "depth"), detail_tolerance=0.0)
 QUADS = replace(ONE, method="quad")
+#: The paper's low-pass filter.
+MULTISAMPLED = replace(QUADS, multisampling=4)
 
 #: table -> (reference choice, {name: settings}, printed ratios, reason why ours differ)
 TABLES = {
@@ -40,6 +42,9 @@ TABLES = {
         {
             "unfiltered": replace(ONE, method="sprites_unfiltered", lights_splats=True),
             "filtered": replace(ONE, method="sprites", lights_splats=True),
+            "unfiltered, backs left out": replace(
+                ONE, method="sprites_unfiltered", lights_splats=True, culls_backs=True
+            ),
             "filtered, backs left out": replace(ONE, method="sprites", lights_splats=True, culls_backs=True),
         },
         "filtered / unfiltered 2.2 to 2.8; backs are 40 % of the splats and left out in both",
@@ -52,10 +57,14 @@ TABLES = {
             "NPR": replace(ONE, method="raycast_printed", shading="toon", lines=Lines(shallow_angle=0.35)),
             "NPR without outlines": replace(ONE, method="raycast_printed", shading="toon"),
             "Phong with shadows": replace(ONE, method="raycast_printed", shadow_resolution=512),
+            "NPR with shadows": replace(
+                ONE, method="raycast_printed", shading="toon", lines=Lines(shallow_angle=0.35), shadow_resolution=512
+            ),
             "Phong, each splat lit": replace(ONE, method="raycast_printed", lights_splats=True),
             "Sprites (2003)": replace(ONE, method="sprites"),
         },
-        "NPR 1.0 to 1.3; with shadows 1.4 to 1.6 (Phong), with NPR 1.3 to 1.6; sprites 0.8 to 1.3",
+        "NPR 1.0 to 1.3; shadows 1.39 to 1.51 under Phong, 1.30 to 1.47 under NPR; sprites 0.81 to 1.15; Phong "
+        "splatting (2004) 3.7 to 4.9",
         "Shadow maps have 512 texels a side; sprites write their depth, which costs the early test.",
     ),
     "Guennebaud et al. 2006, table 1": (
@@ -66,13 +75,14 @@ TABLES = {
             "repaired": replace(ONE, method="homogeneous"),
         },
         "perspective splatting 0.59 to 0.77",
-        "As printed, the matrix is made anew for each fragment here; the square of ray casting has more fragments.",
+        "Ray casting's square has more fragments than the triangle around the ellipse here; there both are squares.",
     ),
     "View-independent paper, table 1": (
         "ours",
         {
             "Ren et al.": replace(ONE, method="ewa_object"),
             "ours": QUADS,
+            "ours, 4 hardware samples": MULTISAMPLED,
             "sprites (Botsch and Kobbelt)": replace(ONE, method="sprites"),
             "discs of one colour, in place of the squares of Dachsbacher et al.": replace(
                 ONE, method="sprites_unfiltered"
@@ -85,6 +95,7 @@ TABLES = {
         "ours",
         {
             "ours": QUADS,
+            "ours, 4 hardware samples": MULTISAMPLED,
             "ours, 2 x 2 samples": replace(QUADS, supersampling=2),
             "Ren et al.": replace(ONE, method="ewa_object"),
         },
@@ -92,12 +103,21 @@ TABLES = {
         "Ren's corners took 74 instructions a vertex there; here fragments are what takes time, and his are more.",
     ),
 }
+#: What tables 5 and 6 of the view-independent paper switch passes off in.
+_OF_VIEW_INDEPENDENT = {
+    "ours": QUADS,
+    "ours, 4 hardware samples": MULTISAMPLED,
+    "Ren et al.": replace(ONE, method="ewa_object"),
+}
 #: Half-axis of the surfel quads in figure 6 of the view-independent paper, in H.
 PRINTED_SIZE = 0.5
 SUMMED = "quad", "ewa", "ewa_object", "sprites", "sprites_printed"
 #: Printed frames per second with a pass switched off, divided by those with it.
 OFF = "visibility", "attributes", "shading"
-PRINTED_OFF = {"ours": "1.7 to 2.1, 1.6 to 1.8, 1.0 to 1.2", "Ren et al.": "1.1 to 1.3, 4.6 to 5.5, 1.0 to 1.1"}
+PRINTED_OFF = {
+    "ours, multisampled": "1.7 to 2.1, 1.6 to 1.8, 1.0 to 1.2",
+    "Ren et al.": "1.1 to 1.3, 4.6 to 5.5, 1.0 to 1.1",
+}
 
 
 def arguments(parser) -> None:
@@ -134,6 +154,9 @@ def _tables(renderer: Renderer, options, report) -> None:
         rows = [row for case in cases for row in _rows(renderer, case, unit, choices, options, report)]
         about = f"{title}: times in that of *{unit}*. Printed: {printed}. {why}"
         report.table(["model", "surfels", *choices], rows, about)
+    rows = [row for case in cases for row in _at_twice_the_size(renderer, case, options)]
+    about = "Botsch and Kobbelt 2003, table 1: times at twice the size. Printed: 1.0 to 1.4, and 1.0 to 1.6."
+    report.table(["model", "surfels", "unfiltered", "filtered"], rows, about)
     counted = (_overdraw(renderer, case, options, size) for case in cases for size in (options.size, options.size // 4))
     about = "Botsch et al. 2005, table 1: splats over a pixel. Printed: 6 to 19 without a filter (as Quads), 7 to 242."
     report.table(["model", "surfels", "pixels", *METHODS], counted, about)
@@ -169,6 +192,21 @@ def _rows(renderer: Renderer, case, unit: str, choices: dict, options, report):
         steps=lambda turns: report.steps(turns, short(name)),
     )  # fmt: skip
     yield short(name), _count(scene), *(f"{drawn.ratio(choice, unit):.2f}" for choice in choices)
+
+
+def _at_twice_the_size(renderer: Renderer, case, options):
+    """How much longer both levels of Botsch and Kobbelt 2003 take with four times the pixels."""
+    name, resolution = case
+    shots = {size: _scene(options.models / name, resolution, size) for size in (options.size, 2 * options.size)}
+    levels = TABLES["Botsch and Kobbelt 2003, table 1"][1]
+    jobs = {
+        (level, size): partial(renderer.render, *shot, levels[level])
+        for level in ("unfiltered", "filtered")
+        for size, shot in shots.items()
+    }
+    drawn = in_turn(jobs, options.turns, frame)
+    ratios = (drawn.ratio((level, 2 * options.size), (level, options.size)) for level in ("unfiltered", "filtered"))
+    yield short(name), _count(shots[options.size][0]), *(f"{ratio:.2f}" for ratio in ratios)
 
 
 def _overdraw(renderer: Renderer, case, options, size: int):
@@ -211,8 +249,7 @@ def _without(renderer: Renderer, case, options):
     """How much quicker a frame is without each pass, in the same turn, for both methods of the paper."""
     name, resolution = case
     scene, camera = _scene(options.models / name, resolution, options.size)
-    for label, method in (("ours", "quad"), ("Ren et al.", "ewa_object")):
-        settings = replace(ONE, method=method)
+    for label, settings in _OF_VIEW_INDEPENDENT.items():
         jobs = {off: partial(_drawn_without, renderer, off, scene, camera, settings) for off in ("", *OFF)}
         drawn = in_turn(jobs, options.turns, frame)
         yield f"{short(name)} at {resolution}", label, *(f"{drawn.ratio('', off):.2f}" for off in OFF)
