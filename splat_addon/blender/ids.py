@@ -49,6 +49,9 @@ TIME_START = "gps_time_start"
 #: working space changes, Blender converts no colour attributes of floats.
 PRIMARIES = "surfels_primaries"
 
+#: Custom property of a surfel mesh: what its colours were made from, see `conversion.painted_as`.
+PAINTED_AS = "surfels_painted_as"
+
 #: The node group that deforms surfels with their source.
 SHAPE_GROUP = "Follow Shape"
 
@@ -116,3 +119,7 @@ POINT_ATTRIBUTES = {
 #: The position that belongs to each surfel's frame. Blender's edit mode, Apply, Mirror and Join move positions alone;
 #: the frames are updated from the difference. Scripts that move both may remove this attribute.
 REST = PointAttribute("surfel_rest", "FLOAT_VECTOR", "vector", 3)
+
+#: The triangle of the source that each surfel lies on, counted from 1, and its place there. 0 is none.
+TRIANGLE = PointAttribute("surfel_triangle", "INT", "value", 1)
+PLACE = PointAttribute("surfel_place", "INT16_2D", "value", 2)

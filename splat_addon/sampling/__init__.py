@@ -8,6 +8,7 @@ camera needs. `deform` lets surfels follow a mesh; points without faces become s
 """
 
 from ..images import Image
+from .attributes.repainting import Repainting, has_normal_map, places_in_triangles
 from .attributes.surfaces import Channel, Computed, NormalMap, Surface, Texture, VertexColors
 from .blocks import Block, joined_blocks, read_block, read_request, sample_block, write_blocks
 from .camera_density import NotSeenError, Outline, camera_spacing, least_camera_spacings, outline
@@ -51,6 +52,7 @@ __all__ = [
     "NotSeenError",
     "Outline",
     "PointsReport",
+    "Repainting",
     "Sampling",
     "SamplingCancelled",
     "SamplingOptions",
@@ -66,6 +68,7 @@ __all__ = [
     "edge_samples",
     "flat_extents",
     "grid_spacing",
+    "has_normal_map",
     "have_same_values",
     "is_plain",
     "is_solid",
@@ -75,6 +78,7 @@ __all__ = [
     "least_camera_spacings",
     "normal_map_texture",
     "outline",
+    "places_in_triangles",
     "predict_count",
     "projected_area",
     "read_block",

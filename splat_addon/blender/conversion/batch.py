@@ -21,6 +21,7 @@ from .as_rendered import as_rendered
 from .following import at_origin_of_source, with_short_origin
 from .gathering import groups
 from .mesh_conversion import Choices, Conversion, bake, place, prepare, sample
+from .painted_as import forget, remember
 from .source_record import record_of
 from .surfel_objects import active_collection, refill, select_only
 
@@ -91,6 +92,7 @@ class Batch(ABC):
         self._finish(conversion, context)
         made = self._place(conversion, context)
         record_of(made).origin = conversion.surfels.origin
+        self._remember(made, conversion)
         conversion.seconds += time.perf_counter() - start
         return made
 
@@ -101,12 +103,17 @@ class Batch(ABC):
             self._finish(conversion, context)
             refill(made, conversion.surfels, np.array(record.origin, np.float64), conversion.materials)
             record.origin = conversion.surfels.origin
+            self._remember(made, conversion)
             conversion.seconds += time.perf_counter() - start
         return self._sampled
 
     def _finish(self, conversion, context: bpy.types.Context) -> None:
         """Finish the surfels; may access Blender."""
         conversion.surfels = with_short_origin(at_origin_of_source(conversion.surfels))
+
+    def _remember(self, made: bpy.types.Object, conversion) -> None:
+        """Keep in new surfels of what their colours were made."""
+        forget(made.data)
 
     @abstractmethod
     def _prepare(self, sources: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph):
@@ -149,6 +156,9 @@ class ConversionBatch(Batch):
                 conversion.notes.append(f"Nothing was baked: {sentence_of(error)}")
         conversion.notes += doubts(conversion.surfels)
         super()._finish(conversion, context)
+
+    def _remember(self, made, conversion: Conversion) -> None:
+        remember(made, conversion)
 
     def _place(self, conversion: Conversion, context) -> bpy.types.Object:
         return place(conversion, active_collection(context))

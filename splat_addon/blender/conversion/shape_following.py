@@ -15,10 +15,11 @@ import numpy as np
 
 from ...sampling import TriangleMesh
 from ...surfels import Surfels
+from ..geometry.attributes import write_attribute
 from ..geometry.node_groups import input_of, known_group, new_modifier_group, uses_group
 from ..geometry.node_maths import Maths, Socket, enabled
 from ..geometry.reading import read_values
-from ..ids import POINT_ATTRIBUTES, REST, SHAPE_GROUP
+from ..ids import POINT_ATTRIBUTES, REST, SHAPE_GROUP, PointAttribute
 from .animation import moves_against
 from .changing_shape import changes_in_time, changes_inside, is_deformed, rebuilt_by
 from .following import follows
@@ -164,35 +165,52 @@ def _bind(
     made: bpy.types.Mesh, surfels: Surfels, triangles: np.ndarray, mesh: TriangleMesh, source: bpy.types.Mesh
 ) -> None:
     """Store the surfels relative to their (N,) triangles, as attributes. mesh: of the evaluated source."""
-    vertices = np.asarray(mesh.positions, np.float64)
-    corners = mesh.triangles[triangles]
-    start = vertices[corners[:, 0]]
-    edge_1, edge_2 = (vertices[corners[:, k]] - start for k in (1, 2))
-    normal = np.cross(edge_1, edge_2)
-    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
-    basis = np.stack([edge_1, edge_2, normal], axis=2)
-    normals = surfels.normals.astype(np.float64)
+    start, *sides = _sides(mesh, triangles)
+    basis = np.stack(sides, axis=2)
     columns = {
         _PLACE: np.linalg.solve(basis, (surfels.positions - start)[..., None])[..., 0],
         **{
             name: np.linalg.solve(basis, axis.astype(np.float64)[..., None])[..., 0]
             for name, axis in zip((_ALONG_X, _ALONG_Y), surfels.half_axes(), strict=True)
         },
-        _NORMAL: np.stack([(normals * side).sum(axis=1) for side in (edge_1, edge_2, normal)], axis=1),
     }
     for name, values in columns.items():
-        made.attributes.new(name, "FLOAT_VECTOR", "POINT").data.foreach_set("vector", np.float32(values).ravel())
-    loops, is_mean = _corners_of(mesh, triangles, source), np.zeros(len(surfels), np.float32)
+        write_attribute(made, PointAttribute(name, "FLOAT_VECTOR", "vector", 3), np.float32(values))
+    loops = _corners_of(mesh, triangles, source)
+    for names, numbers in ((_VERTICES, mesh.triangles[triangles]), (_CORNERS, np.maximum(loops, 0))):
+        for name, values in zip(names, numbers.T, strict=True):
+            write_attribute(made, PointAttribute(name, "INT", "value", 1), np.ascontiguousarray(values, np.int32))
+    bind_normals(made, surfels.normals, triangles, mesh, (loops >= 0).all(axis=1))
+
+
+def bind_normals(
+    made: bpy.types.Mesh, normals: np.ndarray, triangles: np.ndarray, mesh: TriangleMesh, are_known: np.ndarray
+) -> None:
+    """Store the (N, 3) shading normals of surfels that are bound. are_known: of `are_corners_known`."""
+    normals, (_, *sides) = normals.astype(np.float64), _sides(mesh, triangles)
+    bound = np.stack([(normals * side).sum(axis=1) for side in sides], axis=1)
+    write_attribute(made, PointAttribute(_NORMAL, "FLOAT_VECTOR", "vector", 3), np.float32(bound))
+    is_mean = np.zeros(len(normals), np.float32)
     if mesh.corner_normals is not None:
-        along_1, along_2, _ = columns[_PLACE].T
+        along_1, along_2, _ = read_values(made.attributes[_PLACE].data, "vector", 3, len(normals)).T.astype(np.float64)
         shares = np.stack([1 - along_1 - along_2, along_1, along_2], axis=1)
         mean = np.einsum("nk,nkc->nc", shares, mesh.corner_normals[triangles].astype(np.float64))
         mean /= np.maximum(np.linalg.norm(mean, axis=1, keepdims=True), 1e-30)
-        is_mean[(np.linalg.norm(mean - normals, axis=1) < _SAME_NORMAL) & (loops >= 0).all(axis=1)] = 1
-    made.attributes.new(_IS_MEAN, "FLOAT", "POINT").data.foreach_set("value", is_mean)
-    for names, numbers in ((_VERTICES, corners), (_CORNERS, np.maximum(loops, 0))):
-        for name, values in zip(names, numbers.T, strict=True):
-            made.attributes.new(name, "INT", "POINT").data.foreach_set("value", np.ascontiguousarray(values, np.int32))
+        is_mean[(np.linalg.norm(mean - normals, axis=1) < _SAME_NORMAL) & are_known] = 1
+    write_attribute(made, PointAttribute(_IS_MEAN, "FLOAT", "value", 1), is_mean)
+
+
+def are_corners_known(mesh: TriangleMesh, triangles: np.ndarray, source: bpy.types.Mesh) -> np.ndarray:
+    """(n,) bool: whether the corners of triangles are corners of faces of the evaluated source."""
+    return (_corners_of(mesh, triangles, source) >= 0).all(axis=1)
+
+
+def _sides(mesh: TriangleMesh, triangles: np.ndarray) -> tuple[np.ndarray, ...]:
+    """(n, 3) each: the first corners of triangles, both edges from there, and the unit normals."""
+    start, *others = (mesh.positions[mesh.triangles[triangles][:, k]].astype(np.float64) for k in range(3))
+    edge_1, edge_2 = (other - start for other in others)
+    normal = np.cross(edge_1, edge_2)
+    return start, edge_1, edge_2, normal / np.linalg.norm(normal, axis=1, keepdims=True)
 
 
 def _corners_of(mesh: TriangleMesh, triangles: np.ndarray, source: bpy.types.Mesh) -> np.ndarray:

@@ -8,12 +8,12 @@ surfels are bound to, only the faces are compared, as evaluated: its positions m
 
 from __future__ import annotations
 
-import zlib
 from collections.abc import Iterable, Iterator
 
 import bpy
 import numpy as np
 
+from ..fingerprints import checksum, of_values, plain, settings
 from ..geometry.node_groups import input_of, nodes_in, taken_by
 from ..geometry.sources import has_surfaces, instanced_collections
 from .changing_shape import used_by
@@ -31,8 +31,6 @@ _IGNORED = frozenset(
 )
 _IGNORED_IF_IN_NAME = ("active", "open_", "select", "show_")
 
-_SCALARS = frozenset("BOOLEAN INT FLOAT STRING ENUM".split())
-
 
 def shape_of(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph, beside: bpy.types.Object | None = None) -> str:
     """The shape of a source: its data, its modifiers with what they use, and the collection that it shows.
@@ -46,12 +44,12 @@ def shape_of(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph, beside: b
         told += _of_object(each)
         places.add([each], None)
         places.add(_used(each), each)
-    return f"{_checksum(told)} {places}"
+    return f"{checksum(told)} {places}"
 
 
 def faces_of(mesh: bpy.types.Mesh) -> str:
     """The faces of an evaluated mesh."""
-    return _checksum(_of_faces(mesh))
+    return checksum(_of_faces(mesh))
 
 
 def is_same(then: str, now: str) -> bool:
@@ -84,10 +82,6 @@ class _Places:
         return " ".join(self._told)
 
 
-def _checksum(told: Iterable[str]) -> str:
-    return f"{zlib.crc32(chr(10).join(told).encode()):08x}"
-
-
 def _of_object(owner: bpy.types.Object) -> Iterator[str]:
     yield from _of_data(owner.data)
     for modifier in _modifiers(owner):
@@ -114,9 +108,9 @@ def _of_data(data: bpy.types.ID | None) -> Iterator[str]:
     keys = getattr(data, "shape_keys", None)
     yield from (f"{block.value:g} {block.mute}" for block in (keys.key_blocks if keys else ()))
     if isinstance(data, bpy.types.Mesh):
-        yield from (_values(data, *_POSITIONS), *_of_faces(data))
+        yield from (of_values(data, *_POSITIONS), *_of_faces(data))
     elif isinstance(data, bpy.types.PointCloud | bpy.types.Curves):
-        yield _values(data, *_POSITIONS)
+        yield of_values(data, *_POSITIONS)
     elif isinstance(data, bpy.types.Curve):
         yield from _settings(data, bpy.types.ID.bl_rna.properties.keys())
         for spline in data.splines:
@@ -129,43 +123,22 @@ def _of_data(data: bpy.types.ID | None) -> Iterator[str]:
 
 def _of_faces(mesh: bpy.types.Mesh) -> Iterator[str]:
     yield f"{len(mesh.vertices)} {len(mesh.edges)} {len(mesh.loops)} {len(mesh.polygons)}"
-    yield from (_values(mesh, *attribute) for attribute in _FACES)
-
-
-def _values(data: bpy.types.ID, name: str, key: str, width: int, kind: type) -> str:
-    """A checksum of an attribute."""
-    attribute = data.attributes.get(name)
-    values = np.empty(len(attribute.data) * width if attribute else 0, kind)
-    if len(values):
-        attribute.data.foreach_get(key, values)
-    return f"{zlib.crc32(values):08x}"
+    yield from (of_values(mesh, *attribute) for attribute in _FACES)
 
 
 def _of_nodes(modifier: bpy.types.NodesModifier) -> Iterator[str]:
     for item in modifier.node_group.interface.items_tree:
         if item.item_type == "SOCKET" and item.in_out == "INPUT" and hasattr(item, "default_value"):
-            yield _plain(input_of(modifier, item.identifier))
+            yield plain(input_of(modifier, item.identifier))
     for node in nodes_in(modifier.node_group):
         yield from (node.bl_idname, str(node.mute), *_settings(node, bpy.types.Node.bl_rna.properties.keys()))
         sockets = (*node.inputs, *node.outputs)
-        yield from (_plain(socket.default_value) for socket in sockets if hasattr(socket, "default_value"))
+        yield from (plain(socket.default_value) for socket in sockets if hasattr(socket, "default_value"))
 
 
 def _settings(of: bpy.types.bpy_struct, ignored: Iterable[str] = ()) -> Iterator[str]:
-    """The values of its properties that are no pointers."""
-    for each in of.bl_rna.properties:
-        name = each.identifier
-        is_ignored = name in _IGNORED or name in ignored or any(part in name for part in _IGNORED_IF_IN_NAME)
-        if each.type in _SCALARS and not is_ignored:
-            yield f"{name} {_plain(getattr(of, name))}"
-
-
-def _plain(value) -> str:
-    """A value as a text that is the same in the next session. Of other data-blocks, the name may change."""
-    if isinstance(value, bpy.types.ID):
-        return ""
-    if isinstance(value, set):
-        return str(sorted(value))
-    if hasattr(value, "__iter__") and not isinstance(value, str):
-        return " ".join(map(_plain, value))
-    return f"{value:g}" if isinstance(value, float) else str(value)
+    """The values of its properties that are no pointers and change a render."""
+    return settings(
+        of,
+        lambda name: name in _IGNORED or name in ignored or any(part in name for part in _IGNORED_IF_IN_NAME),
+    )

@@ -21,6 +21,7 @@ from ...rendering.scene import placed_at
 from ...streaming import Stream
 from ...surfels import Surfels
 from ..conversion.changed_sources import ChangedSources
+from ..conversion.colour_watch import out_of_date
 from ..conversion.placement import finite_matrix
 from ..conversion.source_record import is_stood_in, stood_in
 from ..geometry.attributes import (
@@ -301,6 +302,8 @@ class _Things:
             "is_holdout": owner.holdout_get(view_layer=self._depsgraph.view_layer),
         }
         if {"surfels", "shown"} & {*what}:
+            if sentence := out_of_date(object_.original):
+                notes.add(sentence)
             rest = self._depsgraph, fields, self._store, notes, self._override
             stream = _stream_of(object_.original, self._store, notes)
             if stream is not None:

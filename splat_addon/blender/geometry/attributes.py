@@ -72,13 +72,13 @@ def fill(mesh: bpy.types.Mesh, surfels: Surfels, offset: np.ndarray) -> None:
         values = getattr(surfels, field)
         if values is None:
             continue
-        _write(mesh, layout, values)
-    _write(mesh, REST, surfels.positions)
+        write_attribute(mesh, layout, values)
+    write_attribute(mesh, REST, surfels.positions)
     if surfels.is_solid:
         mesh[SOLID] = True
     else:
         mesh.pop(SOLID, None)
-    mesh[PRIMARIES] = working_space.to_xyz().ravel().tolist()
+    stamp_space(mesh)
     set_offset(mesh, offset)
     mesh.update()
 
@@ -114,7 +114,17 @@ def since_written(mesh: Points) -> np.ndarray:
     return np.linalg.solve(now, then.reshape(3, 3))
 
 
-def _write(mesh: bpy.types.Mesh, layout: PointAttribute, values: np.ndarray) -> None:
+def stamp_space(mesh: bpy.types.Mesh) -> None:
+    """Store that the colours of a surfel mesh are in the file's working space."""
+    mesh[PRIMARIES] = working_space.to_xyz().ravel().tolist()
+
+
+def remove_attribute(mesh: bpy.types.Mesh, layout: PointAttribute) -> None:
+    if (attribute := mesh.attributes.get(layout.name)) is not None:
+        mesh.attributes.remove(attribute)
+
+
+def write_attribute(mesh: bpy.types.Mesh, layout: PointAttribute, values: np.ndarray) -> None:
     # "position" exists as soon as there are vertices, and its name is reserved.
     attribute = mesh.attributes.get(layout.name) or mesh.attributes.new(layout.name, layout.data_type, "POINT")
     attribute.data.foreach_set(layout.property, _padded(values, layout.columns))

@@ -11,6 +11,7 @@ from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper
 
 from ...interchange import write_gaussian_ply, write_ply
+from ..conversion.colour_watch import refresh
 from ..geometry.attributes import has_surfels
 from ..geometry.scene_offset import scene_offset
 from ..geometry.surfel_files import file_of
@@ -74,6 +75,7 @@ class EXPORT_SCENE_OT_surfels_ply(ExportHelper, bpy.types.Operator):
         row.prop(self, "ascii")
 
     def execute(self, context):
+        refresh(context)
         candidates = context.selected_objects if self.use_selection else context.visible_objects
         try:
             parts, unusable = world_surfels(candidates, context.evaluated_depsgraph_get())

@@ -8,6 +8,7 @@ import bpy
 from ...streaming import PORTION
 from ...streaming.layout import SUFFIX
 from ...surfels import portions
+from ..conversion.colour_watch import refresh
 from ..doors import register_classes_factory
 from ..geometry.attributes import read_surfels
 from ..geometry.sources import is_surfel_object
@@ -33,6 +34,7 @@ class Storing(Writing):
             raise ValueError(said("The surfels belong to a linked file; store them there"))
         path = absolute(filepath or f"//{bpy.path.clean_name(owner.name)[:_LONGEST_NAME]}{SUFFIX}")
         self._owner = owner
+        refresh(bpy.context)
         surfels, self.unusable = read_surfels(owner.data)
         parts = portions(as_in_files(surfels, owner), PORTION)
         super().__init__(path, parts, len(surfels), own_id(owner.data))

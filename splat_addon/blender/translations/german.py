@@ -1009,6 +1009,7 @@ GERMAN = {
     "The conversion to surfels was cancelled; nothing was changed": (
         "Die Umwandlung in Surfels wurde abgebrochen; nichts wurde geändert"
     ),
+    "The colours are out of date: {why}": "Die Farben sind veraltet: {why}",
     "Time: {milliseconds:,.0f} ms": "Zeit: {milliseconds:,.0f} ms",
     "{blur} needs more samples": "{blur} braucht mehr Samples",
     "{count:,} surfels of {objects} objects -> {path}": "{count:,} Surfels von {objects} Objekten -> {path}",

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import bpy
 
+from ..conversion.colour_watch import why_out_of_date
 from ..conversion.mesh_settings import (
     PROPERTY_NAMES,
     QUALITIES,
@@ -76,6 +77,8 @@ class VIEW3D_PT_surfels(bpy.types.Panel):
 
 def advice(what: Chosen, context: bpy.types.Context) -> list[str]:
     """What to do that the button does not say."""
+    if what.kind is SURFELS and what.made is not None and (why := why_out_of_date(what.made)):
+        return [said("The colours are out of date: {why}", why=why)]
     if what.kind is SURFELS and what.lead == what.made and context.mode in _BRUSHES:
         if what.source is None:
             return [said("Brushes need faces, and surfels have none")]

@@ -45,22 +45,24 @@ def shares_of(places: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class Repainting:
-    """What paints surfels of a mesh anew.
+    """What paints surfels of a mesh again.
 
     mesh: with the triangles that were sampled, in any shape. spacing, splat_size: of that sampling, in the mesh's
-    units. texture_mapped: whether colours that are a single image are left to the renderer.
+    units. texture_mapped: whether colours that are a single image are left to the renderer. are_bent: whether a normal
+    map may have bent the normals before.
     """
 
     mesh: TriangleMesh
     spacing: float
     splat_size: float
     texture_mapped: bool = False
+    are_bent: bool = False
 
     @property
     def fields(self) -> tuple[str, ...]:
         """The fields of `Surfels` that depend on the materials; other optional ones of materials are not needed."""
         own = ("colors", "materials", *MaterialSampler(self.mesh.surfaces).optional)
-        own += ("normals",) * any(surface.normal_map is not None for surface in self.mesh.surfaces)
+        own += ("normals",) * (self.are_bent or has_normal_map(self.mesh))
         is_mapped = self.texture_mapped and is_texture_mapped(self.mesh.surfaces)
         return (*own, *UV_FIELDS) if is_mapped else own
 
@@ -107,6 +109,10 @@ class Repainting:
     def _room(name: str, count: int) -> np.ndarray:
         columns, kind = _COLUMNS[name] if name in _COLUMNS else OPTIONAL_LAYOUT[name][:2]
         return np.empty((count, columns) if columns > 1 else count, kind)
+
+
+def has_normal_map(mesh: TriangleMesh) -> bool:
+    return any(surface.normal_map is not None for surface in mesh.surfaces)
 
 
 _COLUMNS = {"colors": (4, np.float32), "materials": (1, np.int32), "normals": (3, np.float32)}
