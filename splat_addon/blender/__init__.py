@@ -5,7 +5,15 @@
 from __future__ import annotations
 
 from . import commands, manual, mesh_sampling_settings, operators, overrides, preferences, properties, translations
-from .conversion import bring_back, colour_watch, mesh_settings, other_engines, points_settings, prediction, source_record
+from .conversion import (
+    bring_back,
+    colour_watch,
+    mesh_settings,
+    other_engines,
+    points_settings,
+    prediction,
+    source_record,
+)
 from .engine import final_render, render_engine, render_passes
 from .geometry import surfel_files
 from .ui import (

@@ -34,10 +34,10 @@ _READ = {
 
 @dataclass(frozen=True)
 class PaintedAs:
-    """count: of surfels. spacing, splat_size, texture_mapped: of the sampling. is_baked: whether some was baked. triangles: a checksum of the sampled mesh's.
-    slots: fingerprints of the materials in the mesh's slots. materials: names of those of the sources' faces.
-    layers: a checksum of the sources' slots, and of what their faces have. are_bent: whether normals are those of a
-    normal map.
+    """count: of surfels. spacing, splat_size, texture_mapped: of the sampling. is_baked: whether some was baked.
+    triangles: a checksum of the sampled mesh's. slots: fingerprints of the materials in the mesh's slots. materials:
+    names of those of the sources' faces. layers: a checksum of the sources' slots, and of what their faces have.
+    are_bent: whether normals are those of a normal map.
     """
 
     count: int
