@@ -187,7 +187,7 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         default=_SAMPLES,
     )
     motion_blur_steps: IntProperty(
-        name="Steps",
+        name="Shutter Steps",
         description=(
             "Number of times during the open shutter at which the scene is evaluated. Fewer are faster, but show "
             "moving objects as separate pictures"
@@ -260,7 +260,7 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         default=10.0,
     )
     shadow_resolution: IntProperty(
-        name="Resolution",
+        name="Shadow Resolution",
         description=(
             "Texels along each side of a shadow map; 0 turns shadows off. Each light with shadows adds one or "
             "several maps"
@@ -357,7 +357,7 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         default=Settings.storage,
     )
     accumulation: EnumProperty(  # `Settings.sum_format`; files know it by this name
-        name="Sums",
+        name="Blend Precision",
         description="How the sums of overlapping splats are stored",
         items=[(name, *texts) for name, texts in SUM_FORMATS.items()],
         default=Settings.sum_format,

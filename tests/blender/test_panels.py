@@ -16,6 +16,7 @@ import pytest
 from splat_addon import blender
 from splat_addon.blender import ids
 from splat_addon.blender.export.camera import PANORAMA_PROPERTIES
+from splat_addon.blender.mesh_sampling_settings import NUMBERED
 from splat_addon.blender.ui import render_panels
 
 #: module -> variable in it -> RNA types that it may be of
@@ -157,24 +158,51 @@ def test_the_walk_finds_what_is_known_to_be_read():
 @pytest.mark.parametrize(
     "name",
     ["DATA_PT_light", "DATA_PT_spot", "DATA_PT_preview", "RENDER_PT_freestyle", "VIEWLAYER_PT_freestyle",
-     "VIEWLAYER_PT_filter", "RENDER_PT_simplify_greasepencil", "VIEWLAYER_PT_layer_passes"],
+     "VIEWLAYER_PT_filter", "RENDER_PT_simplify", "RENDER_PT_simplify_greasepencil", "VIEWLAYER_PT_layer_passes"],
 )  # fmt: skip
 def test_a_stock_panel_that_would_show_what_is_passed_over_stays_away(name):
     assert not hasattr(bpy.types, name) or getattr(bpy.types, name) not in set(visible_panels())
 
 
-def test_what_is_drawn_comes_first_and_the_report_last():
+def test_render_panels_are_in_blender_s_order():
+    """Panels of one order are shown as they were registered, which ours are after those of Blender."""
     panels = [p for p in visible_panels({"render"}) if not getattr(p, "bl_parent_id", "")]
+    panels = [p for p in panels if "HIDE_HEADER" not in getattr(p, "bl_options", ())]
     orders = {panel.__name__: getattr(panel, "bl_order", 0) for panel in panels}
-    ours = [name for name in orders if "_surfel_" in name]
-    first = {"RENDER_PT_surfel_sampling", "RENDER_PT_surfel_surface", "RENDER_PT_surfel_meshes"}
-    assert {name for name in ours if orders[name] == 0} == first
+    assert [name for name in orders if orders[name] == 0 and "_surfel_" not in name] == []
+    ours = [made.bl_label for made in render_panels.ORDERED if not getattr(made, "bl_parent_id", "")]
+    as_in_blender = ["Sampling", "Simplify", "Motion Blur", "Film", "Performance"]
+    assert [label for label in ours if label in as_in_blender] == as_in_blender
+    assert ours[0] == "Sampling" and ours[-1] == "As in the Papers"
     assert [name for name in orders if orders[name] == max(orders.values())] == ["RENDER_PT_surfel_report"]
 
 
-@pytest.mark.parametrize(
-    "name", ["DATA_PT_camera_dof", "RENDER_PT_simplify", "RENDER_PT_simplify_viewport", "VIEWLAYER_PT_override"]
-)
+def rows_of_render_panels():
+    """The names of the rows of our render panels, from their source: in tables `properties`, and those drawn alone."""
+    scene = bpy.context.scene
+    owners = scene.surfel_splatting, scene.render
+    for node in ast.walk(ast.parse(inspect.getsource(render_panels))):
+        if isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") == "properties":
+            rows = [(name, None) for name in ast.literal_eval(node.value)] if isinstance(node.value, ast.Tuple) else []
+        elif isinstance(node, ast.Call) and getattr(node.func, "attr", "") == "prop":
+            name, texts = node.args[1], [each.value for each in node.keywords if each.arg == "text"]
+            rows = [(name.value, texts[0].value if texts else None)] if isinstance(name, ast.Constant) else []
+        else:
+            rows = []
+        for name, text in rows:
+            owner = next((each for each in owners if name in each.bl_rna.properties), None)
+            if owner is not None and text != "":  # a switch in a header has the panel's name
+                yield text or owner.bl_rna.properties[name].name
+    yield from (scene.surfel_splatting.bl_rna.properties[name].name for name, _ in NUMBERED.values())
+
+
+def test_no_two_rows_of_the_render_properties_have_one_name():
+    names = list(rows_of_render_panels())
+    names.remove("Pixels per Surfel")  # of two densities, one of which is chosen
+    assert len(names) > 35 and sorted(names) == sorted(set(names))
+
+
+@pytest.mark.parametrize("name", ["DATA_PT_camera_dof", "VIEWLAYER_PT_override"])
 def test_a_stock_panel_whose_settings_are_honoured_is_joined(name):
     if name == "VIEWLAYER_PT_override" and bpy.app.version < (5, 0, 0):
         pytest.skip("before 5.0 it is Cycles' own, and this engine has one too")

@@ -697,7 +697,6 @@ GERMAN = {
     ),
     "Stop the render": "Das Rendern abbrechen",
     "Stray Points": "Streupunkte",
-    "Sums": "Summen",
     "Supersampling": "Supersampling",
     "Surface": "Oberfläche",
     "Surfaces": "Flächen",
@@ -1087,4 +1086,9 @@ GERMAN = {
     "What is seen in views and in renders": "Was in Ansichten und Renderings zu sehen ist",
     "{count:,} points in {name}": "{count:,} Punkte in {name}",
     "{count:,} surfels of {name}": "{count:,} Surfels von {name}",
+    "Blend Precision": "Genauigkeit der Mischung",
+    "Render": "Rendern",
+    "Shadow Resolution": "Auflösung der Schatten",
+    "Shutter Steps": "Schritte des Verschlusses",
+    "Simplify": "Vereinfachen",
 }

@@ -16,12 +16,13 @@ from ..properties import blurs, is_coarser_than_viewport
 from ..spoken import said
 from .engine_panel import EnginePanel
 from .preset_panels import RENDER_PT_surfel_presets
+from .simplify_panel import SIMPLIFY
+from .wrapped_text import write
 
 
 class _RenderPanel(EnginePanel):
     bl_context = "render"
-    #: Behind the panels with 0: what is drawn, and how.
-    bl_order = 1
+    properties = ()
 
     def draw(self, context):
         super().draw(context)
@@ -31,8 +32,7 @@ class _RenderPanel(EnginePanel):
 
 class RENDER_PT_surfel_sampling(_RenderPanel, bpy.types.Panel):
     bl_label = "Sampling"
-    bl_order = 0
-    properties = ("method",)
+    properties = ("samples", "viewport_samples", "blur_samples", "supersampling", "viewport_supersampling")
 
     def draw_header_preset(self, context):
         RENDER_PT_surfel_presets.draw_panel_header(self.layout)
@@ -41,12 +41,6 @@ class RENDER_PT_surfel_sampling(_RenderPanel, bpy.types.Panel):
         properties = getattr(context.scene, RENDER_SETTINGS)
         draw_presets(self.layout, properties)
         super().draw(context)
-        for name in ("supersampling", "samples"):
-            column = self.layout.column(align=True)
-            column.prop(properties, name)
-            column.prop(properties, f"viewport_{name}", text="Viewport")
-            if name == "samples":
-                column.prop(properties, "blur_samples")
         for blur in blurs_that_need_samples(context.scene, context.view_layer):
             self.layout.label(text=said("{blur} needs more samples", blur=said(blur)), icon="INFO")
         if is_coarser_than_viewport(context.scene, context.view_layer):
@@ -62,16 +56,7 @@ def blurs_that_need_samples(scene: bpy.types.Scene, view_layer: bpy.types.ViewLa
 
 class RENDER_PT_surfel_surface(_RenderPanel, bpy.types.Panel):
     bl_label = "Surface"
-    bl_order = 0
     properties = ("shading", "epsilon")
-
-    def draw(self, context):
-        super().draw(context)
-        properties = getattr(context.scene, RENDER_SETTINGS)
-        row = self.layout.row()
-        method = get_method(properties.method)
-        row.active = method.rasterizer != "point_sprite" and not method.filters_silhouettes
-        row.prop(properties, "edge_threshold")
 
 
 class _ShadingPanel(_RenderPanel):
@@ -152,13 +137,17 @@ class RENDER_PT_surfel_motion_blur(_RenderPanel, bpy.types.Panel):
 class RENDER_PT_surfel_papers(_RenderPanel, bpy.types.Panel):
     bl_label = "As in the Papers"
     bl_options = frozenset({"DEFAULT_CLOSED"})
-    properties = ("lights_splats", "culls_backs", "as_printed", "epsilon_length")
+    properties = ("method", "lights_splats", "culls_backs", "as_printed", "epsilon_length")
 
     def draw(self, context):
         super().draw(context)
         properties = getattr(context.scene, RENDER_SETTINGS)
+        method = get_method(properties.method)
         row = self.layout.row()
-        row.active = get_method(properties.method).pixel_variance is None
+        row.active = method.rasterizer != "point_sprite" and not method.filters_silhouettes
+        row.prop(properties, "edge_threshold")
+        row = self.layout.row()
+        row.active = method.pixel_variance is None
         row.prop(properties, "filter_variance")
 
 
@@ -221,11 +210,11 @@ class RENDER_PT_surfel_performance(_RenderPanel, bpy.types.Panel):
 
 class RENDER_PT_surfel_meshes(_RenderPanel, bpy.types.Panel):
     bl_label = "Meshes"
-    bl_order = 0
     # The density is also for objects that are surfels by their own choice, or because they are transparent.
     properties = ("render_meshes", "mesh_density")
 
     def draw(self, context):
+        write(self.layout, said("Meshes need no conversion: choose the engine and press F12"), context, "INFO")
         super().draw(context)
         properties = getattr(context.scene, RENDER_SETTINGS)
         self.layout.prop(properties, NUMBERED[properties.mesh_density][0])
@@ -237,6 +226,9 @@ _NOT_JOINED = frozenset(
     {
         "VIEWLAYER_PT_filter",
         "VIEWLAYER_PT_layer_passes",
+        "RENDER_PT_simplify",  # the engine's own stands where Blender's other engines have it
+        "RENDER_PT_simplify_viewport",
+        "RENDER_PT_simplify_render",
         "RENDER_PT_simplify_greasepencil",
         "DATA_PT_light",
         "DATA_PT_spot",
@@ -279,25 +271,27 @@ def _has_successor(panel: type) -> bool:
     return not former and hasattr(bpy.types, f"EEVEE_NEXT_{name}")
 
 
-_register_classes, _unregister_classes = register_classes_factory(
-    (
-        RENDER_PT_surfel_sampling,
-        RENDER_PT_surfel_surface,
-        RENDER_PT_surfel_toon,
-        RENDER_PT_surfel_matcap,
-        RENDER_PT_surfel_ramp,
-        RENDER_PT_surfel_lines,
-        RENDER_PT_surfel_motion_blur,
-        RENDER_PT_surfel_shadows,
-        RENDER_PT_surfel_ambient_occlusion,
-        RENDER_PT_surfel_eye_dome,
-        RENDER_PT_surfel_transparency,
-        RENDER_PT_surfel_film,
-        RENDER_PT_surfel_papers,
-        RENDER_PT_surfel_performance,
-        RENDER_PT_surfel_meshes,
-    )
+#: In the order of Blender's own engines, in which they are shown.
+ORDERED = (
+    RENDER_PT_surfel_sampling,
+    RENDER_PT_surfel_surface,
+    RENDER_PT_surfel_toon,
+    RENDER_PT_surfel_matcap,
+    RENDER_PT_surfel_ramp,
+    RENDER_PT_surfel_lines,
+    RENDER_PT_surfel_meshes,
+    RENDER_PT_surfel_shadows,
+    RENDER_PT_surfel_ambient_occlusion,
+    RENDER_PT_surfel_eye_dome,
+    RENDER_PT_surfel_transparency,
+    *SIMPLIFY,
+    RENDER_PT_surfel_motion_blur,
+    RENDER_PT_surfel_film,
+    RENDER_PT_surfel_performance,
+    RENDER_PT_surfel_papers,
 )
+
+_register_classes, _unregister_classes = register_classes_factory(ORDERED)
 
 
 def register():
