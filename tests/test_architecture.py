@@ -97,6 +97,8 @@ RENDERING_FLOORS = (
     {"viewport"},
     {"__init__"},
 )
+#: The folders of `sampling` from the bottom up. Imports go down.
+SAMPLING_FLOORS = "materials", "mesh", "ldc", "attributes", "edges", "refine"
 #: foreign module -> where it may be imported
 HOMES = {
     "bpy": ("blender/",),
@@ -156,6 +158,17 @@ def test_the_rooms_of_rendering_are_in_floors():
             if there[0] == "rendering" and there[1] != here and not {here, there[1]} <= PLAN_AND_FEATURES:
                 if floor_of[there[1]] >= floor_of[here]:
                     wrong.append(f"{file.relative_to(PACKAGE)} imports {'.'.join(there)}")
+    assert wrong == []
+
+
+def test_the_folders_of_sampling_are_in_floors():
+    wrong = [
+        f"{file.relative_to(PACKAGE)} imports {'.'.join(there)}"
+        for number, floor in enumerate(SAMPLING_FLOORS)
+        for file in (PACKAGE / "sampling" / floor).glob("*.py")
+        for there in (resolved(file, level, name) for level, name in imports(file) if level)
+        if there[:1] == ("sampling",) and there[1] in SAMPLING_FLOORS[number + 1 :]
+    ]
     assert wrong == []
 
 

@@ -234,7 +234,7 @@ def _surface(instance: Instance, with_finish: bool) -> np.ndarray:
 def projected_bounds(splats: Splats, camera: Camera) -> tuple[np.ndarray, np.ndarray]:
     """Boxes on the camera's window plane that hold the projected ellipses: two (N, 2) arrays, low and high.
 
-    Exact for a splat in front of the near plane (facts on quality, section 1: centre-relative homography, the
+    Exact for a splat in front of the near plane (centre-relative homography, the
     extrema of m + (a cos + b sin) / (1 + g cos + h sin)); everything for one that touches it; empty
     (low > high) for one that lies wholly before near or beyond far.
     """

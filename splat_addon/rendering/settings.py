@@ -73,7 +73,7 @@ class Settings:
         threshold, section 4.5); 1 is one splat's centre, 0 covers whatever a splat reaches. As printed, the sums below
         it are not normalised, so that the picture jumps at the threshold.
     epsilon: how far, in radii of each splat, the visibility pass moves it back along the view ray;
-        surfaces closer than that mix (facts: 0.5 to 5 is a plateau, 0 breaks the picture up).
+        surfaces closer than that mix (0.5 to 5 is a plateau, 0 breaks the picture up).
     epsilon_length: the same for all splats, in scene units, on top of that. The papers have this alone.
     detail_tolerance: of surfels that are too small to be seen one by one, merged ones are drawn that are off by
         at most this many pixels, in each view (the camera's, and each shadow map's in its texels); 0 draws all.

@@ -8,8 +8,8 @@ camera needs. `deform` lets surfels follow a mesh; points without faces become s
 """
 
 from ..images import Image
+from .attributes.corners import corner_values, normal_map_texture
 from .attributes.repainting import Repainting, has_normal_map, places_in_triangles
-from .attributes.surfaces import Channel, Computed, NormalMap, Surface, Texture, VertexColors
 from .blocks import Block, joined_blocks, read_block, read_request, sample_block, write_blocks
 from .camera_density import NotSeenError, Outline, camera_spacing, least_camera_spacings, outline
 from .deform.deforming import STRETCHED_SHARE, DeformingSurfels
@@ -17,8 +17,8 @@ from .density import grid_spacing, predict_count
 from .edges.borders import DEFAULT_CREASE_ANGLE
 from .edges.edge_samples import edge_samples, joined_at_edges, transition_edges
 from .ldc.reductions import DEFAULT_GRAZING_ANGLE, LEAST_GRAZING_ANGLE, REDUCTIONS, projected_area
+from .materials.surfaces import Channel, Computed, NormalMap, Surface, Texture, VertexColors
 from .mesh.cleaning import drop_unusable
-from .mesh.corners import corner_values, normal_map_texture
 from .mesh.joining import have_same_values, joined, transformed
 from .mesh.solid import is_solid
 from .mesh.strays import drop_strays

@@ -20,12 +20,12 @@ import numpy as np
 from ..array_files import StoredArrays, opened_arrays, write_arrays
 from ..surfels import LAYOUT, OPTIONAL_LAYOUT, empty_surfels
 from .ldc.depth_cube import surface_of
+from .ldc.missed_components import SampledSurface, missed_components
 from .ldc.scan_conversion import Spans, expand
 from .mesh.triangle_mesh import TriangleMesh
 from .options import SamplingOptions
 from .progress import Progress, stage
 from .refine.flat_blocks import BLOCKS, Large
-from .refine.missed_components import SampledSurface, missed_components
 from .sample import Sampling, SamplingRun
 
 _VERSION = 6

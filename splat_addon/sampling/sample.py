@@ -19,11 +19,9 @@ from ..normal_fields import NORMAL_FIELDS, turned
 from ..surfels import LAYOUT, OPTIONAL_LAYOUT, Surfels, empty_surfels
 from .attributes.blend_depths import blend_depths
 from .attributes.lifts import edge_bulges, lifts
-from .attributes.material_sampler import MaterialSampler
 from .attributes.normal_changes import fields_on_triangles
 from .attributes.sample_attributes import SampleFiller
 from .attributes.tangents import layered_tangents
-from .attributes.texture_mapping import BORDER, UV_FIELDS, is_texture_mapped
 from .attributes.texture_seams import seam_edges
 from .density import spacing_of
 from .edges.borders import DEFAULT_CREASE_ANGLE, survey_edges
@@ -33,8 +31,11 @@ from .edges.gaps import BorderPlaces, gap_surfels
 from .edges.meetings import by_facing
 from .ldc.depth_cube import TRIANGLES, axes_of, depth_cube, in_bands, row_bands, rows_of, triangles_of
 from .ldc.grid import make_grid
+from .ldc.missed_components import SampledSurface, missed_components
 from .ldc.reductions import find_reduction
 from .ldc.scan_conversion import BATCH, Spans, batches
+from .materials.material_sampler import MaterialSampler
+from .materials.texture_mapping import BORDER, UV_FIELDS, is_texture_mapped
 from .mesh.barycentric import barycentric
 from .mesh.cleaning import usable_triangles
 from .mesh.solid import is_solid
@@ -47,7 +48,6 @@ from .refine.fitted_planes import fit_planes
 from .refine.flat_blocks import LARGEST, LEAST_AREA, RING, Large, divided
 from .refine.flat_faces import flat_faces
 from .refine.image_samples import inside_triangles
-from .refine.missed_components import SampledSurface, missed_components
 from .refine.two_sided import cards_of, mostly
 from .workers import in_order
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from splat_addon.blender.geometry.mesh_extraction import read_mesh
 from splat_addon.blender.materials.node_walks import input_of
-from splat_addon.sampling.attributes.material_sampler import MaterialSampler, Samples
+from splat_addon.sampling.materials.material_sampler import MaterialSampler, Samples
 
 SIDE = 16
 COLUMNS = 8

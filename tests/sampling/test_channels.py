@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from splat_addon.sampling import Channel, Image, Surface, Texture, Tolerance, VertexColors
-from splat_addon.sampling.attributes.surfaces import ALPHA, BLUE, GREEN, RED
+from splat_addon.sampling.materials.surfaces import ALPHA, BLUE, GREEN, RED
 from tests.plain import sample_mesh, sample_surface
 
 UVS = np.array([[(0, 0), (1, 0), (1, 1)], [(0, 0), (1, 1), (0, 1)]], float)

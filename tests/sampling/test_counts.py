@@ -12,8 +12,8 @@ from splat_addon.sampling import TriangleMesh, predict_count, projected_area
 from splat_addon.sampling.density import mean_width
 from splat_addon.sampling.ldc.depth_cube import depth_cube
 from splat_addon.sampling.ldc.grid import Grid
+from splat_addon.sampling.ldc.missed_components import SampledSurface
 from splat_addon.sampling.ldc.reductions import keep_dominant
-from splat_addon.sampling.refine.missed_components import SampledSurface
 from tests.plain import sample_mesh
 
 

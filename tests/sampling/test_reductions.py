@@ -12,8 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from splat_addon.sampling import REDUCTIONS, TriangleMesh, predict_count, projected_area
+from splat_addon.sampling.ldc.merging import nearest_to_lattice
 from splat_addon.sampling.ldc.reductions import LEAST_GRAZING_ANGLE, keep_dominant, keep_facing
-from splat_addon.sampling.refine.merging import nearest_to_lattice
 from tests.plain import sample_mesh
 
 normals = st.tuples(*[st.floats(0, 1)] * 3).filter(any).map(lambda n: np.array(n)[:, None])

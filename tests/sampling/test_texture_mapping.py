@@ -8,7 +8,7 @@ import pytest
 
 from splat_addon.images import Image
 from splat_addon.sampling import Channel, Surface, Texture, Tolerance, TriangleMesh, VertexColors, corner_values
-from splat_addon.sampling.attributes.texture_mapping import UV_FIELDS
+from splat_addon.sampling.materials.texture_mapping import UV_FIELDS
 from tests.plain import sample_surface
 
 IMAGE = Image(np.dstack([np.random.default_rng(1).uniform(0, 1, (32, 32, 3)), np.ones((32, 32))]))

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import bpy
 
 from ...sampling import Channel, Computed, NormalMap, Surface, Texture, VertexColors
-from ...sampling.attributes.surfaces import ALPHA, RED
+from ...sampling.materials.surfaces import ALPHA, RED
 from ...shading_nodes import constant_value
 from .graphs.channels import ReadGraph, read_channel, read_color, read_normal
 from .graphs.flattened import flattened

@@ -14,7 +14,7 @@ from functools import partial
 import bpy
 import numpy as np
 
-from ...sampling.attributes.surfaces import ALPHA, BLUE, GREEN, RED
+from ...sampling.materials.surfaces import ALPHA, BLUE, GREEN, RED
 from ..working_space import luminance
 from . import function_nodes
 from .node_trees import called

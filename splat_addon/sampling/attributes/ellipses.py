@@ -4,7 +4,7 @@
 Seen along the image's axis the splat is a disc of radius h. On the plane with normal N its conjugate half-diameters are
 (h, 0, dz) and (0, h, dz) with dz = -(Nx dx + Ny dy) / Nz, and its principal ones h / |N_axis| along the steepest
 direction and h across it. (Figure 6 of view-independent object-space splatting has a different sign and slope; the
-formula here stays in the tangent plane, see facts/sampling.md section 5.)
+formula here stays in the tangent plane.)
 """
 
 from __future__ import annotations

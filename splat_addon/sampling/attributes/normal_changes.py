@@ -7,8 +7,8 @@ import numpy as np
 
 from ...normal_fields import NORMAL_FIELDS, changes, fields_of
 from ...quaternions import axes_columns
+from ..materials.texture_mapping import axis_steps
 from ..mesh.triangle_mesh import TriangleMesh
-from .texture_mapping import axis_steps
 
 
 def normals_per_cell(arrays: dict[str, np.ndarray], axes: np.ndarray, spacing: float) -> np.ndarray:

@@ -13,11 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...surfels import OPTIONAL_LAYOUT, Surfels
+from ..materials.material_sampler import MaterialSampler, Samples
+from ..materials.texture_mapping import UV_FIELDS, axis_steps, fill_uvs, is_texture_mapped
 from ..mesh.barycentric import barycentric
 from ..mesh.triangle_mesh import TriangleMesh
-from .material_sampler import MaterialSampler, Samples
 from .tangents import layered_tangents
-from .texture_mapping import UV_FIELDS, axis_steps, fill_uvs, is_texture_mapped
 
 #: Surfels that are painted at a time.
 _BLOCK = 1 << 16

@@ -14,12 +14,12 @@ from ...normal_fields import NORMAL_FIELDS, fields_of
 from ...quaternions import axes_columns
 from ..ldc.grid import Grid
 from ..ldc.scan_conversion import Spans, expand
+from ..materials.material_sampler import MaterialSampler, Samples
+from ..materials.texture_mapping import BORDER, axis_steps, fill_uvs
 from ..mesh.triangle_mesh import TriangleMesh, corner_indices, corners_at, crossed, doubled_areas
 from .blend_depths import blend_depths
 from .ellipses import MAX_STRETCH, ellipse_rotations, ellipse_scales
 from .lifts import lifts
-from .material_sampler import MaterialSampler, Samples
-from .texture_mapping import BORDER, axis_steps, fill_uvs
 from .texture_seams import border_lines
 
 #: A projected triangle that is smaller than its snapped twin by this factor, or flipped, has no usable barycentrics of
@@ -169,7 +169,7 @@ class SampleFiller:
         any length.
 
         A triangle that projects to (nearly) nothing can gain area once its corners are snapped, and its own
-        barycentrics would be infinite (facts/sampling.md section 1, the trap). For such triangles everything is
+        barycentrics would be infinite. For such triangles everything is
         computed from the snapped corners.
         """
         corners = corners_at(self._coordinates, corner_indices(self._mesh.triangles.take(triangles, axis=0)))

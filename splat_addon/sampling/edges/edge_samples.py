@@ -13,7 +13,7 @@ import numpy as np
 
 from ...quaternions import axes_quaternions
 from ...surfels import OPTIONAL_LAYOUT, Surfels, concatenate
-from ..attributes.material_sampler import MaterialSampler, Samples
+from ..materials.material_sampler import MaterialSampler, Samples
 from ..mesh.triangle_mesh import TriangleMesh, doubled_areas, gather_corners
 
 #: Surfels nearer than this share of their spacing to a sample of an edge are too close to it: the paper has no number.

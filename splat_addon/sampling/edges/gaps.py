@@ -10,9 +10,9 @@ import numpy as np
 
 from ...surfels import LAYOUT, OPTIONAL_LAYOUT
 from ..attributes.ellipses import ellipse_rotations, ellipse_scales
-from ..attributes.material_sampler import MaterialSampler, Samples
 from ..ldc.grid import Grid
 from ..ldc.scan_conversion import expand
+from ..materials.material_sampler import MaterialSampler, Samples
 from ..mesh.barycentric import barycentric
 from ..mesh.triangle_mesh import TriangleMesh
 from .borders import Borders

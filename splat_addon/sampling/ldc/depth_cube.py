@@ -12,8 +12,8 @@ from dataclasses import replace
 import numpy as np
 
 from ..mesh.triangle_mesh import corner_indices, corners_at, doubled_areas, triangle_chunks
-from ..refine.missed_components import SampledSurface
 from .grid import Grid
+from .missed_components import SampledSurface
 from .scan_conversion import Spans, scan_convert
 
 #: Surfel rows are indexed with 32 bits elsewhere, which is far beyond practical counts.

@@ -11,7 +11,7 @@ import numpy as np
 from ..mesh.triangle_mesh import CHUNK, TriangleMesh
 
 #: Maximum number of cells along the longest edge times sub-cells per cell: up to this every step of the scan conversion
-#: is exact in float64 (proved for a product below 2^26.5, measured at 2^26; facts/sampling.md section 1).
+#: is exact in float64 (proved for a product below 2^26.5, measured at 2^26).
 EXACT_BOUND = 2**25
 
 #: Minimum sub-cells per cell; with fewer, samples lie up to 0.01 cell beside their triangle.

@@ -3,7 +3,7 @@
 
 A reduction sees a triangle's normal, so rejected samples are never computed, and the number of surfels follows from
 areas alone: N = sum over triangles of A sum over counted axes of |n_axis|, over H^2. Steps that need the finished
-samples are in `refine.merging`. Names and ratios: Table 2 of view-independent object-space splatting.
+samples are in `merging`. Names and ratios: Table 2 of view-independent object-space splatting.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ import numpy as np
 
 from ..mesh.cleaning import drop_unusable
 from ..mesh.triangle_mesh import TriangleMesh, doubled_areas, gather_corners, triangle_chunks
-from ..refine.merging import nearest_to_lattice
+from .merging import nearest_to_lattice
 
-#: Zwicker's rejection angle, fitted to the published counts in facts/sampling.md section 4.
+#: Zwicker's rejection angle, fitted to the published counts.
 DEFAULT_GRAZING_ANGLE = math.radians(70)
 
 #: Every surface is seen by some image within acos(1 / sqrt(3)) = 54.74 degrees; a smaller angle would lose surfaces.
@@ -34,7 +34,7 @@ def keep_dominant(normals: np.ndarray, grazing_angle: float) -> np.ndarray:
     """Keep only the image that the surface faces most; ties go to the lowest axis.
 
     View-independent object-space splatting's normal-based reduction, with the triangle's own normal: chosen by
-    the interpolated normal, a sample's neighbour can pick another axis and leave a hole (facts/sampling.md section 5).
+    the interpolated normal, a sample's neighbour can pick another axis and leave a hole.
     """
     x, y, z = normals
     is_x = (x >= y) & (x >= z)

@@ -4,7 +4,7 @@
 Corners are whole sub-cells stored as float64. With L the largest coordinate in sub-cells, every product and sum below
 stays under 2 L^2 <= 2^51 and is exact; the only division is correctly rounded, and a quotient that is not an integer is
 at least 1/L away from one, which exceeds the rounding, so its `ceil` is right. Rows and columns are half-open, so two
-triangles that share an edge never share or lose a sample (facts/sampling.md section 1).
+triangles that share an edge never share or lose a sample.
 """
 
 from __future__ import annotations

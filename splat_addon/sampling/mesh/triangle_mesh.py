@@ -10,7 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ..attributes.surfaces import Surface
+from ..materials.surfaces import Surface
 from .places import vertex_hashes
 
 #: Triangles, or vertices, per batch: few enough for temporaries to stay in the processor's cache.

@@ -2,7 +2,7 @@
 """Adaptive sampling: where the surface is flat, one larger surfel replaces 4, 16 or 64.
 
 On the quadtree of each layered depth image, four blocks merge into one if their surfels lie in one plane within a
-tolerance, with similar normals and colours (facts/sampling.md section 8). Only whole blocks merge, so every cell stays
+tolerance, with similar normals and colours. Only whole blocks merge, so every cell stays
 covered. A large disc is only placed where the same plane continues all around its block, so that it never sticks out
 over an edge: surfels become smaller towards creases and borders.
 """
@@ -22,9 +22,9 @@ from ...surfels import LAYOUT
 from ..attributes.blend_depths import LEAST_BLENDING
 from ..attributes.ellipses import ellipse_rotations, ellipse_scales
 from ..attributes.normal_changes import from_normals_per_cell, normals_per_cell
-from ..attributes.texture_mapping import BORDER, UV_FIELDS, from_uv_planes, is_mapped, slips, uv_planes
 from ..ldc.depth_cube import TRIANGLES
 from ..ldc.grid import BLOCK
+from ..materials.texture_mapping import BORDER, UV_FIELDS, from_uv_planes, is_mapped, slips, uv_planes
 
 #: Maximum doublings of the spacing. The renderer separates surfaces that are half a splat's radius apart, so larger
 #: discs would blend with surfaces several spacings behind them.

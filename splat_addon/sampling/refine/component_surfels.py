@@ -10,10 +10,10 @@ import numpy as np
 from ...quaternions import quaternion_axes
 from ...surfels import OPTIONAL_LAYOUT
 from ..attributes.ellipses import ellipse_rotations
-from ..attributes.material_sampler import MaterialSampler, Samples
-from ..attributes.texture_mapping import BORDER, UV_FIELDS, fill_uvs
 from ..ldc.depth_cube import TRIANGLES
 from ..ldc.grid import Grid
+from ..materials.material_sampler import MaterialSampler, Samples
+from ..materials.texture_mapping import BORDER, UV_FIELDS, fill_uvs
 from ..mesh.triangle_mesh import TriangleMesh, doubled_areas, gather_corners
 
 #: Half-axis of the smallest disc, in spacings: specks without measurable area still get a surfel.

@@ -13,11 +13,11 @@ from typing import NamedTuple
 import numpy as np
 
 from ..attributes.lifts import LEAST_LIFT, MOST_LIFT, edge_bulges
-from ..attributes.texture_mapping import is_texture_mapped
 from ..edges.borders import survey_edges, unit_normals
 from ..edges.ordering import grouped
 from ..ldc.grid import longest_edge
 from ..ldc.reductions import DEFAULT_GRAZING_ANGLE, find_reduction
+from ..materials.texture_mapping import is_texture_mapped
 from ..mesh.triangle_mesh import TriangleMesh, corner_indices, corners_at
 from .flat_blocks import BLOCKS, LEAST_AREA
 from .flat_faces import flat_faces, may_be_wide

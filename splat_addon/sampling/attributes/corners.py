@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 
 from ...surfels import OPTIONAL_LAYOUT
-from ..attributes.material_sampler import MaterialSampler, Samples, placed
-from ..attributes.surfaces import Channel, Surface, Texture
-from ..attributes.tangents import layered_tangents
-from ..attributes.texture_seams import corner_seams
-from .triangle_mesh import TriangleMesh
+from ..materials.material_sampler import MaterialSampler, Samples, placed
+from ..materials.surfaces import Channel, Surface, Texture
+from ..mesh.triangle_mesh import TriangleMesh
+from .tangents import layered_tangents
+from .texture_seams import corner_seams
 
 
 def corner_values(mesh: TriangleMesh) -> dict[str, np.ndarray]:

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...quaternions import quaternion_axes
-from ..attributes.texture_mapping import moved
+from ..materials.texture_mapping import moved
 
 
 def nearest_to_lattice(arrays: dict[str, np.ndarray], axes: np.ndarray, spacing: float) -> dict[str, np.ndarray]:
