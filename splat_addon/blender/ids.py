@@ -18,6 +18,7 @@ EXPORT_PLY = "export_scene.surfels_ply"
 #: Scripts call it by this name, which is older than the other formats.
 IMPORT_FILE = "import_scene.surfels_ply"
 RENDER_PRESET = "render.surfel_preset"
+SCAN_LOOK = "render.surfel_scan_look"
 ADD_RENDER_PRESET = "render.surfel_preset_add"
 ADD_CONVERSION_PRESET = "object.surfel_conversion_preset_add"
 UPDATE_SURFELS = "object.surfels_update"

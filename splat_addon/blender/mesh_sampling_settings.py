@@ -20,6 +20,7 @@ from .enum_values import check_choices
 from .geometry.sources import asked_of
 from .ids import OBJECT_SETTINGS, RENDER_SETTINGS
 from .registration import OVERRIDABLE, with_property
+from .scan_color_settings import ScanColorProperties
 
 #: density -> the property of `MeshSamplingProperties` that holds its number, and the kind of density.
 NUMBERED = {
@@ -113,7 +114,7 @@ def density_of_meshes(scene: bpy.types.Scene) -> dict[str, float]:
     return {kind: getattr(properties, name)}
 
 
-class SurfelObjectSettings(bpy.types.PropertyGroup):
+class SurfelObjectSettings(ScanColorProperties, bpy.types.PropertyGroup):
     """An object's own settings: `object.surfel_splatting`."""
 
     render_as: EnumProperty(

@@ -471,6 +471,12 @@ def _matcap(properties) -> Matcap | None:
     return matcap_of(properties.matcap) if is_read and properties.matcap else None
 
 
+def set_eye_dome(properties, eye_dome: EyeDome) -> None:
+    """Switch eye-dome lighting on in render settings."""
+    properties.use_eye_dome = True
+    properties.eye_dome_strength, properties.eye_dome_radius = eye_dome.strength, eye_dome.radius
+
+
 def _eye_dome(properties) -> EyeDome:
     return EyeDome(properties.eye_dome_strength, properties.eye_dome_radius)
 

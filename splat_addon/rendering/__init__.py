@@ -9,7 +9,7 @@ from .device import open_device
 from .frame import EMPTY_DEPTH, Frame
 from .plan.build import plan
 from .plan.frame_plan import FramePlan
-from .presets import PRESETS, Preset
+from .presets import PRESETS, SCAN_LOOK, Preset
 from .renderer import RenderCancelled, Renderer, Shown
 from .scene import Finish, Instance, Material, NormalTexture, PolygonInstance, Scene, SurfaceTexture
 from .scene.camera import Camera, look_at
@@ -30,6 +30,7 @@ from .viewport.refinement import Refinement
 __all__ = (
     "EMPTY_DEPTH",
     "PRESETS",
+    "SCAN_LOOK",
     "Arrival",
     "Camera",
     "Cryptomatte",

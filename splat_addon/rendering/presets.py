@@ -7,7 +7,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from .scene.eye_dome import EyeDome
 from .settings import Settings
+
+#: Fields of `Settings` that show a scan as it was captured, without any light: `Settings(**SCAN_LOOK)`.
+SCAN_LOOK = {"shading": "captured", "eye_dome": EyeDome()}
 
 
 @dataclass(frozen=True)

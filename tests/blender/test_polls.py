@@ -10,6 +10,7 @@ from splat_addon.blender import ids
 ALWAYS = {
     ids.RENDER_PRESET,
     ids.SHOW_SURFELS,
+    ids.SCAN_LOOK,
     ids.IMPORT_FILE,
     ids.ADD_RENDER_PRESET,
     ids.ADD_CONVERSION_PRESET,

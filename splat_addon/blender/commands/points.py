@@ -17,7 +17,9 @@ from ..conversion.points_conversion import PointsBatch
 from ..conversion.points_settings import PointsProperties, keywords, viewpoint
 from ..conversion.source_record import SurfelPointsSettings
 from ..geometry.points_extraction import has_points
+from ..ids import OBJECT_SETTINGS
 from ..operators.file_paths import file_sentence
+from ..scan_color_settings import COLOR_ITEMS
 from .convert import is_blend_there, named, place, result
 from .out_paths import made_room
 from .written_files import save_blend
@@ -40,6 +42,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         choices=FLOAT_COLORS,
         default=FLOAT_COLORS[0],
         help="what a file's colours mean if they are floats",
+    )
+    parser.add_argument(
+        "--color-by",
+        type=str.upper,
+        choices=[name for name, *_ in COLOR_ITEMS if name != "ATTRIBUTE"],
+        help="what the colours of files show, if not their own",
+    )
+    parser.add_argument(
+        "--plain", action="store_true", help="leave render settings, colours and the camera of files as they are"
     )
     for name in PointsProperties.__annotations__:
         setting = SurfelPointsSettings.bl_rna.properties[name]
@@ -71,9 +82,13 @@ def _import_files(options: argparse.Namespace) -> None:
         work = FileImport(str(Path(path).absolute()), options, bpy.context, options.float_colors)
         try:
             work.run()
-            work.place(bpy.context)
+            made = work.place(bpy.context)
         except (ValueError, OSError) as error:
             raise ValueError(f"{work.name}: {file_sentence(error)}") from error
+        if not options.plain:
+            work.show(bpy.context, made)
+        if options.color_by:
+            getattr(made, OBJECT_SETTINGS).color_by = options.color_by
         print(f"{work.name}: {len(work.surfels):,} surfels", flush=True)
         for note in work.notes:
             print(f"{work.name}: {note}", flush=True)

@@ -11,11 +11,13 @@ import bpy
 from mathutils import Matrix
 
 from ...doubts import doubts
-from ...interchange import Points, read_contents
+from ...interchange import Gaussians, Points, read_contents
 from ...sampling import surfels_from_points
 from ...surfels import Surfels
 from ..geometry.scan_attributes import write_scan_attributes
 from ..geometry.scene_offset import keep_offset, offset_for_scan, scene_offset, taken_from
+from ..geometry.sources import is_surfel_object
+from ..scan_look import add_camera, color_without_colors, give_scan_look
 from ..spoken import said
 from ..working_space import surfels_from_rec709
 from .points_settings import PointsProperties, keywords, viewpoint
@@ -36,6 +38,7 @@ class FileImport:
         self._keywords, self._flatness, self._colors = keywords(properties), properties.flatness, float_colors
         self._eye, self._offset = viewpoint(properties, context), scene_offset(context.scene)
         self._attributes, self._rows = {}, None
+        self._is_captured, self._has_colors = True, True
         self.share, self.points, self.is_cancelled = 0.0, 0, False
         self.notes: list[str] = []
 
@@ -52,6 +55,7 @@ class FileImport:
             self.surfels = self._surfels_of(contents, told)
         else:
             self.surfels, self._offset = contents.surfels, None
+            self._is_captured = isinstance(contents, Gaussians)
             self.notes += contents.notes()
         if not len(self.surfels):
             raise ValueError(f"The file gives no surfels{': ' if self.notes else ''}{'; '.join(self.notes)}.")
@@ -78,6 +82,7 @@ class FileImport:
             **self._keywords,
         )
         self._attributes, self._rows = points.attributes, report.kept
+        self._has_colors = points.colors is not None
         self.notes += [*report.notes(), *points.said]
         if scanners is not None and report.estimated_normals:
             self.notes.append("Took the places of scanners from the file, so that normals face them")
@@ -94,6 +99,19 @@ class FileImport:
         made = add_surfel_object(Path(self.name).stem, surfels, Matrix(), [active_collection(context)])
         write_scan_attributes(made.data, self._attributes, self._rows)
         return made
+
+    def show(self, context: bpy.types.Context, made: bpy.types.Object) -> None:
+        """Let the first picture of what `place` made be right: choose the colours of a scan that has none, the look of
+        scans if it is the scene's first, and a camera if there is none. What was not captured stays as it is."""
+        if not self._is_captured:
+            return
+        if not self._has_colors:
+            color_without_colors(made, self._attributes)
+        if not any(is_surfel_object(each) for each in context.scene.objects if each != made):
+            give_scan_look(context.scene)
+            self.notes.append("Took the look of scans, see Render Properties: Captured Color and Eye-Dome Lighting")
+        if context.scene.camera is None:
+            add_camera(context, made, self.surfels.positions)
 
     def status(self) -> str:
         """What the status bar shows."""

@@ -30,6 +30,7 @@ from ..geometry.attributes import (
     has_surfels_beside_faces,
     have_same_values,
     offset_of,
+    read_beside,
     read_stored,
     since_written,
 )
@@ -37,7 +38,7 @@ from ..geometry.derived import Derived
 from ..geometry.gaussian_clouds import is_gaussian_cloud
 from ..geometry.points_proxy import is_solid, shown_points, shows_as_points
 from ..geometry.sources import asked_of, may_change, owner_of
-from ..ids import POINT_ATTRIBUTES
+from ..ids import OBJECT_SETTINGS, POINT_ATTRIBUTES
 from ..materials.material_override import overridden, override_of
 from ..materials.surface_textures import TextureStore
 from ..mesh_sampling_settings import Form, are_meshes_texture_mapped, density_of_meshes, form_of
@@ -47,6 +48,7 @@ from .holdouts import held_slots, with_holes
 from .light_linking import LightSets
 from .live_meshes import LiveMesh, LiveMeshes, Manner, Place
 from .object_detail import detail_of
+from .scan_colors import Column, painter
 from .shading import light_of, shading_material
 from .streams import Streams, not_followed
 from .world import WorldStore
@@ -117,6 +119,7 @@ class SurfelStore:
         self._kept: dict[int, Kept] = {}
         self._current: set[int] = set()
         self._followed: dict = {}
+        self._columns: dict[tuple[int, str], Column | None] = {}
 
     def get(
         self, points: Points, key: int, name: str, offset: np.ndarray, is_solid: bool = False
@@ -137,6 +140,16 @@ class SurfelStore:
         kept = self._kept[key]
         return kept.surfels, kept.skipped, kept.strayed
 
+    def column(self, points: Points, key: int, attribute: str, skipped: int) -> Column | None:
+        """An attribute of the surfels that `get` gave for this key, read once per mesh and frame; empty until all of
+        these are there."""
+        if key not in self._current:
+            return Column(np.zeros(0, np.float32), 0)
+        if (key, attribute) not in self._columns:
+            values = read_beside(points, attribute, skipped)
+            self._columns[key, attribute] = None if values is None else Column.of(values)
+        return self._columns[key, attribute]
+
     def begin_frame(
         self, changed: set[str] | None = None, are_materials_edited: bool = False, is_sky_edited: bool = False
     ) -> None:
@@ -151,6 +164,7 @@ class SurfelStore:
         self.streams.begin_frame()
         self.textures.begin_frame(are_materials_edited, is_told=changed is not None)
         self._current = {k for k in self._current if changed is not None and self._kept[k].name not in changed}
+        self._columns = {key: column for key, column in self._columns.items() if key[0] in self._current}
 
     def forget_unused(self) -> None:
         """Drop meshes and close files that this frame did not request."""
@@ -320,17 +334,20 @@ class _Things:
         if "points" in what:
             notes.add(_BARE_POINTS)
 
-    def _kept(self, entry: bpy.types.DepsgraphObjectInstance, kind: str) -> tuple[Surfels | None, int, int]:
-        """What the store has of an entry's surfels, or of those that are shown as points."""
+    def _kept(self, entry: bpy.types.DepsgraphObjectInstance, kind: str) -> tuple:
+        """What the store has of an entry's surfels, or of those that are shown as points, and their `painter`."""
         object_, owner = entry.object, entry.object.original
         offset = offset_of(owner.data)
         if kind == "shown":
             with shown_points(entry.instance_object or object_) as points:
-                return self._store.get(points, object_.data.session_uid, owner.name_full, offset, is_solid(owner))
+                key = object_.data.session_uid
+                kept = self._store.get(points, key, owner.name_full, offset, is_solid(owner))
+                return *kept, painter(object_, self._store, points, key, kept[1])
         with _attributes_of(object_) as points:
             # an evaluated point cloud that no modifier made has no session_uid of its own
             key = points.session_uid or points.original.session_uid
-            return self._store.get(points, key, points.name_full, offset)
+            kept = self._store.get(points, key, points.name_full, offset)
+            return *kept, painter(object_, self._store, points, key, kept[1])
 
 
 def _world_of(depsgraph: bpy.types.Depsgraph) -> bpy.types.World | None:
@@ -426,11 +443,11 @@ def _placed(parts: list[tuple[Instance, int]], matrices: np.ndarray) -> list[Ins
 
 def _instances(object_, kept, depsgraph, fields: dict, store: SurfelStore, notes: Notes, override) -> list[Instance]:
     """The instance of an object that has surfels, in its own space; none while the surfel store, whose result `kept`
-    is, reads them.
+    is, reads them. kept: also has the function that paints them, or None.
 
     Raises ValueError for broken attributes.
     """
-    surfels, skipped, strayed = kept
+    surfels, skipped, strayed, paint = kept
     # a point cloud made by modifiers has no slots of its own
     slots = [slot.material for slot in object_.original.evaluated_get(depsgraph).material_slots]
     if surfels is None:
@@ -452,6 +469,8 @@ def _instances(object_, kept, depsgraph, fields: dict, store: SurfelStore, notes
         materials = (shading_material(override, notes),)
         painted = overridden(surfels, override, store.derived, notes)
         return with_holes(Instance(painted, materials=materials, **fields), held_slots([override]))
+    if paint is not None:
+        surfels = paint(surfels, notes=notes)
     own = surfels.arrays().keys()
     materials = tuple(shading_material(material, notes, own) for material in slots)
     textures = tuple(store.textures.get(material, notes) for material in slots) if surfels.has_uvs else ()
@@ -485,7 +504,9 @@ def _streamed(object_, stream: Stream, depsgraph, fields: dict, store: SurfelSto
         notes.add(f"{object_.name} keeps its own colours under the overriding material, as they come from a file")
     to_origin = np.eye(4)
     to_origin[:3, 3] = offset_of(object_.original.data) - stream.file.origin
-    kept = stream.coarsest, 0, 0
+    kept = stream.coarsest, 0, 0, None
+    if getattr(object_.original, OBJECT_SETTINGS).color_by != "COLOR":
+        notes.add(f"{object_.name} keeps its own colours, as they come from a file")
     made = _instances(object_, kept, depsgraph, fields, store, notes, None)
     if len(made) > 1:
         notes.add(

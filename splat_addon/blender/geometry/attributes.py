@@ -173,6 +173,33 @@ def read_stored(
     return stored_of(arrays, is_solid or bool(mesh.get(SOLID)), {} if known is None else known, name, origin)
 
 
+#: Blender's types of one number.
+_NUMBERS = ("FLOAT", "INT", "INT8", "BOOLEAN")
+
+
+def read_beside(mesh: Points, attribute: str, skipped: int) -> np.ndarray | None:
+    """(N,) float32 values of a point attribute of one number, of the surfels that `read_stored` gives; None if there is
+    no such attribute. skipped: the number of unusable points."""
+    found = mesh.attributes.get(attribute)
+    if found is None or found.domain != "POINT" or found.data_type not in _NUMBERS:
+        return None
+    values = read_values(found.data, "value", 1, count_of(mesh))
+    loose = _loose_points(mesh)
+    values = values if loose is None else values[loose]
+    if not skipped:
+        return values
+    name = mesh.name_full
+    arrays = {f: read_field(mesh, of, name) for f, of in stored_fields(mesh, name).items() if f != REST_FIELD}
+    arrays = arrays if loose is None else {name: column[loose] for name, column in arrays.items()}
+    return values[_usable_rows(arrays | {"scales": arrays["scales"][:, :2]})]
+
+
+def _usable_rows(arrays: dict[str, np.ndarray]) -> np.ndarray:
+    """Which rows `valid_surfels` takes: their numbers take the materials' way."""
+    numbers = np.where(arrays["materials"] < 0, -1, np.arange(len(arrays["materials"])))
+    return valid_surfels(**(arrays | {"materials": numbers}))[0].materials
+
+
 #: The name in `stored_fields` of the centres as they were written.
 REST_FIELD = "rest"
 
@@ -227,9 +254,7 @@ def stored_of(arrays: dict[str, np.ndarray], is_solid: bool, known: dict, name: 
     if rest is None:
         return Stored(surfels, skipped, 0)
     if skipped:
-        # their numbers take the materials' way
-        numbers = np.where(arrays["materials"] < 0, -1, np.arange(len(rest)))
-        rest = rest[valid_surfels(**(arrays | {"materials": numbers}))[0].materials]
+        rest = rest[_usable_rows(arrays)]
     if np.array_equal(surfels.positions, rest):
         return Stored(surfels, skipped, 0)
     before = known.get(name)

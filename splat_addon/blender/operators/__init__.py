@@ -7,6 +7,7 @@ from . import (
     export_ply,
     import_file,
     render_preset,
+    scan_look,
     show_surfels,
     store_surfels,
     surfels_from_mesh,
@@ -23,6 +24,7 @@ MODULES = (
     export_ply,
     import_file,
     render_preset,
+    scan_look,
     show_surfels,
     surfels_or_source,
 )

@@ -67,6 +67,16 @@ tell"""
         default="DISPLAY",
     )
 
+    has_scan_look: BoolProperty(
+        name="Scan Look",
+        description=(
+            "Show the scan as it was captured, without any light: with Captured Color and Eye-Dome Lighting, if it is "
+            "the scene's first; in colors of its intensity or height, if it has none; from a new camera, if the scene "
+            "has none"
+        ),
+        default=True,
+    )
+
     def invoke(self, context, event):
         self._is_asked = True
         if not self.filepath:
@@ -77,7 +87,7 @@ tell"""
     def draw(self, context):
         self.layout.use_property_split = True
         self.layout.use_property_decorate = False
-        for name in ("keeps_in_file", "float_colors"):
+        for name in ("has_scan_look", "keeps_in_file", "float_colors"):
             self.layout.prop(self, name)
         header, body = self.layout.panel("surfels_import_gaussians")
         header.label(text="Gaussian Splats")
@@ -123,6 +133,8 @@ tell"""
     def _finish(self, context, work):
         if isinstance(work, FileImport):
             made = work.place(context)
+            if self.has_scan_look:
+                work.show(context, made)
             select_only(context, [made])
             self.report({"INFO"}, said("{name}: {count:,} surfels", name=self._name, count=len(work.surfels)))
             self._tell(work.notes)

@@ -100,6 +100,55 @@ GERMAN = {
         "Alle Eigenschaften, genau; andere Programme lesen die Positionen, Normalen und Farben"
     ),
     "Ambient Occlusion": "Umgebungsverdeckung",
+    "Scan Colors": "Scan-Farben",
+    "Color by": "Farbe nach",
+    "What the surfels' colors show": "Was die Farben der Surfels zeigen",
+    "Own Colors": "Eigene Farben",
+    "The colors that are stored with the surfels": "Die Farben, die bei den Surfels gespeichert sind",
+    "Height": "Höhe",
+    "The world's Z": "Z der Welt",
+    "Intensity": "Intensität",
+    "How much light came back to the scanner": "Wie viel Licht zum Scanner zurückkam",
+    "Classification": "Klassifizierung",
+    "The class of each point; without a ramp in colors of what it stands for": (
+        "Die Klasse jedes Punktes; ohne Verlauf in Farben dessen, wofür sie steht"
+    ),
+    "Return Number": "Echonummer",
+    "Which of several echoes of a pulse it is": "Welches von mehreren Echos eines Pulses es ist",
+    "Time": "Zeit",
+    "When it was measured": "Wann es gemessen wurde",
+    "Scan Number": "Scan-Nummer",
+    "In which of several scans of a file it is": "In welchem von mehreren Scans einer Datei es ist",
+    "Attribute": "Attribut",
+    "A point attribute of one number, by its name": "Ein Punktattribut aus einer Zahl, nach seinem Namen",
+    "Name of a point attribute of one number": "Name eines Punktattributs aus einer Zahl",
+    "Automatic Range": "Automatischer Bereich",
+    "Spread the ramp over all values but a few extreme ones": (
+        "Den Verlauf über alle Werte außer wenigen äußersten verteilen"
+    ),
+    "From": "Von",
+    "To": "Bis",
+    "The value at the left end of the ramp": "Der Wert am linken Ende des Verlaufs",
+    "The value at the right end of the ramp": "Der Wert am rechten Ende des Verlaufs",
+    "Texture whose color ramp the values are looked up in; without one, a ramp of even lightness": (
+        "Textur, in deren Farbverlauf die Werte nachgeschlagen werden; ohne eine ein Verlauf gleichmäßiger Helligkeit"
+    ),
+    "Scan Look": "Scan-Aussehen",
+    (
+        "Show scans as they were captured, without any light: choose Surfel Splatting, Captured Color, Eye-Dome "
+        "Lighting and the view transform Standard"
+    ): (
+        "Scans zeigen, wie sie aufgenommen wurden, ohne Licht: Surfel Splatting, Aufgenommene Farbe, "
+        "Eye-Dome-Beleuchtung und die Ansichtstransformation Standard wählen"
+    ),
+    (
+        "Show the scan as it was captured, without any light: with Captured Color and Eye-Dome Lighting, if it is the "
+        "scene's first; in colors of its intensity or height, if it has none; from a new camera, if the scene has none"
+    ): (
+        "Den Scan zeigen, wie er aufgenommen wurde, ohne Licht: mit aufgenommener Farbe und Eye-Dome-Beleuchtung, wenn "
+        "er der erste der Szene ist; in Farben seiner Intensität oder Höhe, wenn er keine hat; von einer neuen Kamera, "
+        "wenn die Szene keine hat"
+    ),
     "Eye-Dome Lighting": "Eye-Dome-Beleuchtung",
     "Radius": "Radius",
     "Strength": "Stärke",

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Panels for how an object is drawn and for its ray visibility; for other engines Blender's Visibility panel does not
-show the latter."""
+"""Panels for how an object is drawn, for a scan's colours, and for ray visibility, which Blender's Visibility panel
+does not show for other engines."""
 
 from __future__ import annotations
 
@@ -49,4 +49,34 @@ class OBJECT_PT_surfel_splatting(EnginePanel, bpy.types.Panel):
         self.layout.prop(settings, "detail")
 
 
-register, unregister = register_classes_factory((OBJECT_PT_surfel_visibility, OBJECT_PT_surfel_splatting))
+class OBJECT_PT_surfel_colors(EnginePanel, bpy.types.Panel):
+    bl_label = "Scan Colors"
+    bl_context = "object"
+
+    @classmethod
+    def poll(cls, context):
+        return super().poll(context) and context.object is not None and is_surfel_object(context.object)
+
+    def draw(self, context):
+        super().draw(context)
+        settings = getattr(context.object, OBJECT_SETTINGS)
+        self.layout.prop(settings, "color_by")
+        if settings.color_by == "ATTRIBUTE":
+            self.layout.prop_search(settings, "color_attribute", context.object.data, "attributes")
+        if settings.color_by == "COLOR":
+            return
+        self.layout.prop(settings, "color_is_automatic")
+        ends = self.layout.column(align=True)
+        ends.active = not settings.color_is_automatic
+        ends.prop(settings, "color_from")
+        ends.prop(settings, "color_to")
+        self.layout.template_ID(settings, "color_ramp", new="texture.new")
+        if settings.color_ramp is not None:
+            self.layout.prop(settings.color_ramp, "use_color_ramp", text="Ramp")
+            if settings.color_ramp.use_color_ramp:
+                self.layout.template_color_ramp(settings.color_ramp, "color_ramp")
+
+
+register, unregister = register_classes_factory(
+    (OBJECT_PT_surfel_visibility, OBJECT_PT_surfel_splatting, OBJECT_PT_surfel_colors)
+)

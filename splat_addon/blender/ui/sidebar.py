@@ -34,6 +34,7 @@ from ..ids import (
     MESH_SETTINGS,
     OBJECT_SETTINGS,
     POINTS_SETTINGS,
+    SCAN_LOOK,
     SHOW_SURFELS,
     SIDEBAR_PANEL,
     SIDEBAR_TAB,
@@ -71,6 +72,7 @@ class VIEW3D_PT_surfels(bpy.types.Panel):
         draw_choice(layout, what.made if what.can_update and context.mode == "OBJECT" else None)
         for line in advice(what, context):
             write(layout, line, context, "INFO")
+        _draw_scan(layout, what)
         _draw_settings(layout, what, context)
         _draw_files(layout, what, context)
 
@@ -183,6 +185,17 @@ def _draw_unread(layout: bpy.types.UILayout, what: Chosen, context: bpy.types.Co
     for sentence in sentences:
         write(box, sentence, context)
     box.operator(UPDATE_SURFELS, text="Bake Materials", icon="RENDER_STILL").bake = True
+
+
+def _draw_scan(layout: bpy.types.UILayout, what: Chosen) -> None:
+    """Draw how the colours of surfels without a source are shown, which a scan may be."""
+    if what.kind is not SURFELS or what.source is not None:
+        return
+    layout.operator(SCAN_LOOK, icon="SHADING_TEXTURE")
+    column = layout.column()
+    column.use_property_split = True
+    column.use_property_decorate = False
+    column.prop(getattr(what.made, OBJECT_SETTINGS), "color_by")
 
 
 def _draw_files(layout: bpy.types.UILayout, what: Chosen, context: bpy.types.Context) -> None:

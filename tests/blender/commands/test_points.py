@@ -22,10 +22,23 @@ def test_files_become_surfels_in_a_new_blend(surfels_command, tmp_path):
     code, said = surfels_command("points", *files, "--neighbours", 8, "--out", tmp_path / "scan.blend")
     assert code == 0 and "a.xyz: 225 surfels" in said and "b.ply: Estimated normals" in said
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "scan.blend"))
-    assert sorted(made.name for made in bpy.data.objects) == ["a", "b"]
-    found = [read_surfels(made.data)[0] for made in bpy.data.objects]
+    objects = sorted((made for made in bpy.data.objects if made.type == "MESH"), key=lambda made: made.name)
+    assert [made.name for made in objects] == ["a", "b"]
+    scene = bpy.context.scene
+    assert scene.render.engine == "SURFEL_SPLATTING" and scene.surfel_splatting.use_eye_dome and scene.camera
+    assert [made.surfel_splatting.color_by for made in objects] == ["HEIGHT", "HEIGHT"]
+    found = [read_surfels(made.data)[0] for made in objects]
     assert [len(surfels) for surfels in found] == [225, 225]
     assert np.abs(found[0].geometric_normals()[:, 2]).min() > 0.99
+
+
+def test_plain_files_are_surfels_alone_and_their_colors_may_be_chosen(surfels_command, tmp_path):
+    plane(tmp_path / "a.xyz", 0)
+    options = "--plain", "--color-by", "height", "--out", tmp_path / "plain.blend"
+    assert surfels_command("points", tmp_path / "a.xyz", *options)[0] == 0
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "plain.blend"))
+    assert [made.surfel_splatting.color_by for made in bpy.data.objects] == ["HEIGHT"]
+    assert not bpy.context.scene.surfel_splatting.use_eye_dome
 
 
 def test_a_file_that_cannot_be_read_is_named_and_nothing_is_saved(surfels_command, tmp_path):

@@ -4,6 +4,8 @@
 import bpy
 import numpy as np
 import pytest
+from bpy_extras.object_utils import world_to_camera_view
+from mathutils import Vector
 
 from scan_files.formats import las_file, ptx_scan
 from splat_addon.blender.conversion.file_import import FileImport
@@ -11,6 +13,7 @@ from splat_addon.blender.conversion.points_settings import PointsProperties
 from splat_addon.blender.geometry.scan_attributes import write_scan_attributes
 from splat_addon.blender.geometry.scene_offset import scene_offset
 from splat_addon.interchange import ReadingCancelled, read_contents
+from splat_addon.rendering import SCAN_LOOK
 from splat_addon.sampling import SamplingCancelled
 
 FINE = (0.0001, 0.0001, 0.0001)
@@ -100,6 +103,45 @@ def test_normals_face_the_scanner_that_the_file_names(surfels_of, tmp_path):
     surfels = surfels_of(bpy.context.object)
     inward = matrix[:3, 3] - scene_offset(bpy.context.scene) - bpy.context.object.location - surfels.positions
     assert (np.einsum("ij,ij->i", surfels.normals, inward) > 0.5).all()
+
+
+def test_the_first_scan_of_a_scene_gets_the_look_of_scans_and_a_camera_that_sees_it(imported):
+    """The next one leaves all this as the user changed it."""
+    scene = bpy.context.scene
+    made, places = imported(CORNERS[0])
+    settings = scene.surfel_splatting
+    assert scene.render.engine == "SURFEL_SPLATTING" and scene.view_settings.view_transform == "Standard"
+    assert settings.shading == SCAN_LOOK["shading"] and settings.use_eye_dome
+    assert settings.eye_dome_radius == SCAN_LOOK["eye_dome"].radius
+    bpy.context.view_layer.update()
+    corners = [camera_places(scene, Vector(place - scene_offset(scene))) for place in places[:: len(places) - 1]]
+    assert all(0 < x < 1 and 0 < y < 1 and z > 0 for x, y, z in corners)
+    assert made.surfel_splatting.color_by == "INTENSITY"
+    settings.shading, scene.camera = "phong", None
+    imported(CORNERS[1])
+    assert settings.shading == "phong" and scene.camera is not None
+
+
+def camera_places(scene, place):
+    """Where a place lies in the camera's picture: 0 to 1 across and up, and its depth."""
+    return world_to_camera_view(scene, scene.camera, place)
+
+
+def test_without_intensity_a_scan_without_colors_shows_its_height_and_with_colors_these(tmp_path):
+    rows = [(x, y, 0.1 * x) for x in range(9) for y in range(9)]
+    for name, color in (("bare.xyz", ""), ("red.xyz", " 200 10 10")):
+        (tmp_path / name).write_text("".join(f"{x} {y} {z}{color}\n" for x, y, z in rows))
+        bpy.ops.import_scene.surfels(filepath=str(tmp_path / name), isolated="KEEP")
+    assert [each.surfel_splatting.color_by for each in bpy.data.objects if each.type == "MESH"] == ["HEIGHT", "COLOR"]
+
+
+def test_without_the_look_an_import_changes_nothing_of_the_scene(imported):
+    before = bpy.context.scene.render.engine
+    made, _ = imported(CORNERS[0], has_scan_look=False)
+    scene = bpy.context.scene
+    assert scene.camera is None and scene.render.engine == before and not scene.surfel_splatting.use_eye_dome
+    assert made.surfel_splatting.color_by == "COLOR"
+    assert bpy.ops.render.surfel_scan_look() == {"FINISHED"} and scene.surfel_splatting.use_eye_dome
 
 
 class Settings(PointsProperties):

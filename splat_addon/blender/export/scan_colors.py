@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The colours that an object's settings choose in place of its own, for a picture: what is stored stays as it is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from typing import NamedTuple
+
+import bpy
+import numpy as np
+
+from ...interchange.scan_colors import GREYS, RAMP, of_classes, on_ramp
+from ...primaries import converted
+from ...surfels import Surfels
+from ..enum_values import check_choices
+from ..geometry.derived import Derived
+from ..ids import OBJECT_SETTINGS
+from ..materials.ramps import table
+from ..working_space import from_rec709
+
+
+class Column(NamedTuple):
+    """Numbers of the surfels of a mesh. digest: two columns with the same one are the same."""
+
+    values: np.ndarray
+    digest: int
+
+    @classmethod
+    def of(cls, values: np.ndarray) -> Column:
+        return cls(values, hash(values.tobytes()))
+
+
+def painter(object_: bpy.types.Object, store, points, key: int, skipped: int) -> Callable[..., Surfels]:
+    """paint(surfels, notes=...) for an evaluated object, while its points can be read. store, points, key, skipped: as
+    in `SurfelStore.column`."""
+    attribute = getattr(object_.original, OBJECT_SETTINGS).color_column
+    column = store.column(points, key, attribute, skipped) if attribute else None
+    return partial(_scan_colored, object_=object_, column=column, derived=store.derived)
+
+
+def _scan_colored(
+    surfels: Surfels, object_: bpy.types.Object, column: Column | None, derived: Derived, notes
+) -> Surfels:
+    """The surfels in the colours that the object's settings choose. column: of the attribute that they show; None if
+    there is none. derived: keeps them."""
+    settings = getattr(object_.original, OBJECT_SETTINGS)
+    check_choices(settings, "object properties")
+    kind = settings.color_by
+    if kind == "COLOR":
+        return surfels
+    if kind == "HEIGHT":
+        row = tuple(np.array(object_.matrix_world, np.float64)[2].tolist())
+        column = Column(_heights(surfels, row), hash(row))
+    elif column is None:
+        what = f"attribute {settings.color_column!r} of one number per point" if settings.color_column else "attribute"
+        notes.add(f"{object_.name} has no {what} to be coloured by, and keeps its own colours")
+        return surfels
+    if len(column.values) != len(surfels):  # some of them stand in for all while a view reads them
+        return surfels
+    texture = settings.color_ramp
+    ramp = table(texture.color_ramp)[:, :3].clip(0) if texture is not None and texture.use_color_ramp else None
+    ends = (None, None) if settings.color_is_automatic else (settings.color_from, settings.color_to)
+    key = kind, column.digest, ends, None if ramp is None else ramp.tobytes()
+    return derived.get(surfels, key, lambda: _painted(surfels, _colors(kind, column.values, ramp, ends)))
+
+
+def _heights(surfels: Surfels, row: tuple[float, ...]) -> np.ndarray:
+    """The world's Z of surfels. row: of the matrix from their space to the world."""
+    return surfels.positions.astype(np.float64) @ row[:3] + (surfels.origin @ row[:3] + row[3])
+
+
+def _colors(kind: str, values: np.ndarray, ramp: np.ndarray | None, ends) -> np.ndarray:
+    """(N, 3) colours in the file's working space."""
+    if ramp is not None:
+        return on_ramp(values, ramp, *ends)
+    if kind == "CLASSIFICATION":
+        return converted(of_classes(values), from_rec709())
+    return converted(on_ramp(values, GREYS if kind == "INTENSITY" else RAMP, *ends), from_rec709())
+
+
+def _painted(surfels: Surfels, colors: np.ndarray) -> Surfels:
+    """The surfels in these colours, with their own opacity and without images."""
+    own = {name: None for name in ("uvs", "uv_along_x", "uv_along_y", "uv_border")}
+    return replace(surfels, colors=np.column_stack([colors, surfels.colors[:, 3]]).astype(np.float32), **own)

@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What makes the first picture of a scan right without a lamp: settings of the scene, colours, and a camera."""
+
+from __future__ import annotations
+
+import math
+
+import bpy
+import numpy as np
+from mathutils import Vector
+
+from ..rendering.presets import SCAN_LOOK
+from .ids import ENGINE, OBJECT_SETTINGS, RENDER_SETTINGS
+from .properties import set_eye_dome
+
+#: Display values as the scanner's camera had them.
+VIEW_TRANSFORM = "Standard"
+
+#: Where a camera stands, seen from the middle of a scan.
+_FROM = Vector((0.45, -1.0, 0.65)).normalized()
+
+#: Share of the points that a camera need not show, and points that are looked at to place it.
+_ASIDE, _MOST = 0.002, 100_000
+
+#: Share of the picture that stays free around a scan.
+_ROOM = 0.08
+
+
+def give_scan_look(scene: bpy.types.Scene) -> None:
+    """Let a scene show scans as they were captured: with this engine, without any light."""
+    scene.render.engine = ENGINE
+    scene.view_settings.view_transform = VIEW_TRANSFORM
+    settings = getattr(scene, RENDER_SETTINGS)
+    settings.shading = SCAN_LOOK["shading"]
+    set_eye_dome(settings, SCAN_LOOK["eye_dome"])
+
+
+def color_without_colors(made: bpy.types.Object, attributes: dict[str, np.ndarray]) -> None:
+    """Choose what the colours of a scan show that has none of its own: intensity if it was measured, or else height."""
+    intensity = attributes.get("intensity")
+    has_intensity = intensity is not None and len(intensity) and intensity.min() < intensity.max()
+    getattr(made, OBJECT_SETTINGS).color_by = "INTENSITY" if has_intensity else "HEIGHT"
+
+
+def add_camera(context: bpy.types.Context, made: bpy.types.Object, positions: np.ndarray) -> None:
+    """Give a scene without a camera one that sees a new object from above the front, and a world if it has none.
+    positions: (N, 3) in the object's space."""
+    scene, matrix = context.scene, np.array(made.matrix_world, np.float64)
+    if scene.world is None:
+        scene.world = bpy.data.worlds.new("World")
+    data = bpy.data.cameras.new("Scan")
+    camera = bpy.data.objects.new("Scan", data)
+    turned = _FROM.to_track_quat("Z", "Y")
+    some = positions[:: max(len(positions) // _MOST, 1)].astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
+    seen = some @ np.array(turned.to_matrix(), np.float64)  # across, up and towards the camera
+    middle = np.quantile(seen, (_ASIDE, 1 - _ASIDE), axis=0).mean(axis=0)
+    wide, tall = (
+        scene.render.resolution_x * scene.render.pixel_aspect_x,
+        scene.render.resolution_y * scene.render.pixel_aspect_y,
+    )
+    half = math.tan(data.angle / 2) * (1 - _ROOM) * np.array((wide, tall)) / max(wide, tall)
+    from_middle = seen - middle
+    needed = from_middle[:, 2] + (np.abs(from_middle[:, :2]) / half).max(axis=1)
+    distance = max(float(np.quantile(needed, 1 - _ASIDE)), 1e-3)
+    data.clip_start, data.clip_end = distance / 1000, 100 * distance
+    camera.location = turned @ Vector(middle) + distance * _FROM
+    camera.rotation_euler = turned.to_euler()
+    scene.collection.objects.link(camera)
+    scene.camera = camera
