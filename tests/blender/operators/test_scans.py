@@ -131,7 +131,7 @@ def test_without_intensity_a_scan_without_colors_shows_its_height_and_with_color
     rows = [(x, y, 0.1 * x) for x in range(9) for y in range(9)]
     for name, color in (("bare.xyz", ""), ("red.xyz", " 200 10 10")):
         (tmp_path / name).write_text("".join(f"{x} {y} {z}{color}\n" for x, y, z in rows))
-        bpy.ops.import_scene.surfels(filepath=str(tmp_path / name), isolated="KEEP")
+        bpy.ops.import_scene.surfels_ply(filepath=str(tmp_path / name), isolated="KEEP")
     assert [each.surfel_splatting.color_by for each in bpy.data.objects if each.type == "MESH"] == ["HEIGHT", "COLOR"]
 
 
