@@ -89,7 +89,7 @@ RENDERING_FLOORS = (
     {"presets", "view"},
     {"shadows", "sample_views"},
     {"assembly"},
-    {"detail"},
+    {"detail", "probes"},
     {"culling", "upload"},
     PLAN_AND_FEATURES,
     {"statistics"},

@@ -4,6 +4,7 @@
 
 #include "hosts/outputs.glsl"
 #include "hosts/mean_surface.glsl"
+#include "lib/eye_position.glsl"
 
 struct Shaded {
   MeanSurface mean;
@@ -15,11 +16,6 @@ struct Shaded {
   float coverage;  // below 1 only with an edge threshold or transparency
   Outputs outputs;
 };
-
-vec3 eye_position(ivec2 texel, float depth) {
-  vec2 place = view.window.xy + (vec2(texel) + 0.5) * view.window.zw;
-  return vec3(view.is_parallel > 0.5 ? place : place * depth, -depth);
-}
 
 #parts
 #include "lib/faces/{faces}.glsl"

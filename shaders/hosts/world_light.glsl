@@ -12,6 +12,6 @@ vec3 world_irradiance(vec3 normal) {  // over pi
 
 vec3 world_reflection(vec3 direction, float roughness) {
   vec3 light = sent_reflection(direction, roughness);
-  #hook reflected(light, roughness)
+  #hook reflected(light, direction, roughness)
   return light;
 }

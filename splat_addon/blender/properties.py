@@ -272,15 +272,24 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
     use_ambient_occlusion: BoolProperty(
         name="Ambient Occlusion",
         description=("Let visible surfaces block the world's light from one another. Frames take slightly longer"),
-        default=False,
+        default=True,
     )
     ambient_occlusion_distance: FloatProperty(
         name="Distance",
-        description="How far away a surface can be and still block the world's light",
+        description=(
+            "How far away a surface can be and still block the world's light; 0 for half the distance to the camera"
+        ),
         subtype="DISTANCE",
         min=0.0,
         soft_max=100.0,
-        default=1.0,
+        default=0.0,
+    )
+    use_reflections: BoolProperty(
+        name="Reflections",
+        description=(
+            "Let glossy objects reflect what stands around them. It is drawn from each of them when it has changed"
+        ),
+        default=True,
     )
     use_eye_dome: BoolProperty(
         name="Eye-Dome Lighting",
@@ -452,8 +461,9 @@ def _settings(scene, **choices) -> Settings:
         edge_threshold=properties.edge_threshold,
         detail_tolerance=properties.detail_tolerance,
         shadow_resolution=properties.shadow_resolution,
-        ambient_occlusion=properties.ambient_occlusion_distance if properties.use_ambient_occlusion else 0.0,
         eye_dome=_eye_dome(properties) if properties.use_eye_dome else None,
+        ambient_occlusion=_occlusion(properties),
+        reflections=properties.use_reflections,
         layers=properties.layers,
         blends_rest=properties.blends_rest,
         lights_splats=properties.lights_splats,
@@ -464,6 +474,11 @@ def _settings(scene, **choices) -> Settings:
         transparent_film=scene.render.film_transparent,
         **choices,
     )
+
+
+def _occlusion(properties) -> float:
+    """The distance of ambient occlusion, as of `Settings`."""
+    return (properties.ambient_occlusion_distance or math.inf) if properties.use_ambient_occlusion else 0.0
 
 
 def _matcap(properties) -> Matcap | None:

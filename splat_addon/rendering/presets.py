@@ -17,18 +17,20 @@ SCAN_LOOK = {"shading": "captured", "eye_dome": EyeDome()}
 @dataclass(frozen=True)
 class Preset:
     """values: the fields of `Settings` that it sets; figures refer to these. samples: number of samples of a final
-    render in Blender, enough to make edges as smooth as in the viewport. summary: its purpose and measurements."""
+    render in Blender, enough to make edges as smooth as in the viewport. occludes: whether Blender's pictures have
+    ambient occlusion. summary: its purpose and measurements."""
 
     name: str
     label: str
     summary: str
     values: dict
     samples: int = 1
+    occludes: bool = True
 
     @property
     def render_values(self) -> dict:
         """`values`, and what Blender's final render has in addition."""
-        return {**self.values, "samples": self.samples}
+        return {**self.values, "samples": self.samples, "use_ambient_occlusion": self.occludes}
 
     def of(self, settings: Settings) -> Settings:
         """`settings` with this preset's values."""
@@ -52,6 +54,7 @@ PRESETS = {
             "Preview",
             "The fastest picture without holes: unfiltered, so edges and textures are jagged",
             {"method": "quad", "supersampling": 1, "detail_tolerance": 1.0},
+            occludes=False,
         ),
         Preset(
             "balanced",

@@ -22,6 +22,7 @@ from .detail.streamed import Streamed
 from .device import Device
 from .device.interface import Target, texture_bytes
 from .device.interface import Texture as DeviceTexture
+from .features import reflections
 from .features.outputs import check_samplers
 from .features.sample_sum import SUM
 from .frame import OUTPUTS, Frame
@@ -35,6 +36,7 @@ from .plan.frame_plan import FramePlan
 from .plan.graph import Pause, Texture
 from .plan.shared import Shared
 from .plan.tile import TileContext, texture_key
+from .probes.drawing import Probes
 from .read_back import assembled, background, background_pixel, mended, positions_of, read_tile
 from .scene import Scene
 from .scene.camera import Camera
@@ -76,6 +78,7 @@ class Renderer:
         self.resources = Resources(device)
         self.streamed = Streamed()
         self.near_and_far = NearAndFar()
+        self.probes = Probes()
         self._refining: tuple[Scene, tuple, Shared] | None = None
         self._drawn: WeakSet[Surfels] = WeakSet()
 
@@ -181,7 +184,22 @@ class Renderer:
         before = no_history(scene) if is_repeatable else history(scene, self._drawn)
         frame_plan = plan(scene, camera, settings, history=before, **options)
         check_samplers(frame_plan, self.device.max_samplers)
-        return Shared(scene, frame_plan, settings, repeated, before)
+        return Shared(
+            scene, frame_plan, settings, repeated, before, self._probes(scene, frame_plan, settings, is_repeatable)
+        )
+
+    def _probes(self, scene: Scene, frame_plan: FramePlan, settings: Settings, is_repeatable: bool):
+        """What the plan's probes see, drawn if anything in the scene has changed; None if it has none."""
+        probes = frame_plan.found.get(reflections.probes)
+        if not probes:
+            return None
+
+        def draw(seen: Scene, camera: Camera, of: Viewers, plain: Settings) -> Frame:
+            return self._frame(
+                self._planned(seen, camera, plain, is_repeatable=is_repeatable, viewers=of), camera, None, None
+            )
+
+        return self.probes.pictures(scene, probes, settings, draw)
 
     def _was_drawn(self, scene: Scene) -> None:
         """A picture of the scene is complete."""
@@ -287,6 +305,7 @@ class Renderer:
     def release(self) -> None:
         """Free everything on the device."""
         self._refining = None
+        self.probes.forget()
         self.resources.release()
 
     def _check(self, settings: Settings) -> None:

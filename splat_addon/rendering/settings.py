@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from .frame import OUTPUTS
@@ -79,7 +80,8 @@ class Settings:
         at most this many pixels, in each view (the camera's, and each shadow map's in its texels); 0 draws all.
     shadow_resolution: texels along the side of a shadow map; 0 disables shadows.
     ambient_occlusion: distance, in scene units, up to which visible surfaces block the world's light from one another;
-        0 disables it.
+        0 disables it, and infinity is half the distance to the viewer.
+    reflections: glossy objects reflect what stands around them, and not only the world.
     layers: maximum number of transparent surfaces behind one another per pixel. blends_rest: the last layer blends all
         remaining surfaces without order, each splat lit by itself; otherwise they are lost.
     alpha_threshold: minimum opacity of the surface that depth and normal are taken from.
@@ -118,6 +120,7 @@ class Settings:
     detail_tolerance: float = 1.0
     shadow_resolution: int = 1024
     ambient_occlusion: float = 0.0
+    reflections: bool = False
     layers: int = 3
     blends_rest: bool = True
     alpha_threshold: float = 0.5
@@ -159,8 +162,10 @@ class Settings:
             raise ValueError(f"detail_tolerance must be 0 or more pixels, not {self.detail_tolerance}.")
         if self.shadow_resolution not in range(MAX_SHADOW_RESOLUTION + 1):
             raise ValueError(f"shadow_resolution must be 0 to {MAX_SHADOW_RESOLUTION}, not {self.shadow_resolution}.")
-        if not 0 <= self.ambient_occlusion <= MAX_LENGTH:
-            raise ValueError(f"ambient_occlusion must be a distance of 0 or more, not {self.ambient_occlusion}.")
+        if not (0 <= self.ambient_occlusion <= MAX_LENGTH or self.ambient_occlusion == math.inf):
+            raise ValueError(
+                f"ambient_occlusion must be a distance of 0 or more, or infinite, not {self.ambient_occlusion}."
+            )
         if self.layers not in range(1, MAX_LAYERS + 1):
             raise ValueError(f"layers must be 1 to {MAX_LAYERS}, not {self.layers}.")
         if self.blends_rest and self.layers < 2:
@@ -180,6 +185,10 @@ class Settings:
             raise ValueError(f"epsilon must be 0 or more splat radii, not {self.epsilon}.")
         if not 0 <= self.epsilon_length <= MAX_LENGTH:
             raise ValueError(f"epsilon_length must be a length of 0 or more, not {self.epsilon_length}.")
+
+    @property
+    def use_ambient_occlusion(self) -> bool:
+        return self.ambient_occlusion > 0
 
     @property
     def gaussian_variance(self) -> float:

@@ -324,11 +324,24 @@ BLURRED = {"depth_of_field": lambda: blurred(*scenes.checker_plane(count=COUNT, 
 #: Its faces' edges lie across the torus; tests/rendering/test_panorama.py has closed forms.
 ALL_AROUND = {"panorama": lambda: around(*scenes.torus(count=COUNT, size=SIZE))}
 
+
+def mirrored(scene, camera):
+    """Metal balls of several roughnesses before a painted floor."""
+    floor, ball = scene.polygons[0], scenes.round_polygons(12)
+    placed = [floor]
+    for number, roughness in enumerate((0.0, 0.15, 0.35, 0.7)):
+        matrix = np.diag((0.3, 0.3, 0.3, 1.0))
+        matrix[:3, 3] = number * 0.5 - 0.75, -0.2, 0.5
+        placed.append(PolygonInstance(ball, matrix, materials=(Material(roughness=roughness, metallic=1.0),)))
+    return replace(scene, polygons=placed, world=(0.3, 0.4, 0.5)), camera
+
+
 #: tests/rendering/test_sun_apart.py, test_sides.py and test_terminators.py have facts about them.
 SPECIAL = {
     "sun_apart": lambda: with_its_sun_apart(*scenes.torus(count=COUNT, size=SIZE)),
     "nothing": lambda: of_nothing(*scenes.torus(count=100, size=SIZE)),
     "cards": lambda: with_cards(*scenes.torus(count=COUNT, size=SIZE)),
+    "mirrored": lambda: mirrored(*scenes.polygons(count=COUNT, size=SIZE)),
 }
 
 #: Shading models that show the surface without light.
@@ -360,6 +373,7 @@ CASES = [
     ("transparent_shadows", "quad", {}),
     ("polygons", "quad", {"ambient_occlusion": 1.0}),
     ("torus", "quad", {"shading": "flat", "eye_dome": EyeDome()}),
+    ("mirrored", "quad", {"reflections": True}),
     *(("polygon_shadows", method, {"lights_splats": True}) for method in ("quad", "mip")),
     ("large_lamp_shadows", "quad", {}),
     ("many_finishes", "mip", {}),

@@ -401,8 +401,9 @@ GERMAN = {
     "Homogeneous": "Homogen",
     "Homogeneous, as Printed": "Homogen, wie gedruckt",
     "How a splat is drawn and filtered": "Wie ein Splat gezeichnet und gefiltert wird",
-    "How far away a surface can be and still block the world's light": (
-        "Wie weit entfernt eine Fläche sein und das Licht der Welt noch abhalten kann"
+    ("How far away a surface can be and still block the world's light; 0 for half the distance to the camera"): (
+        "Wie weit entfernt eine Fläche sein und das Licht der Welt noch abhalten kann; bei 0 halb so weit wie die "
+        "Kamera"
     ),
     (
         "How far behind the nearest splat others still blend with it, in splat radii. Lower values separate "
@@ -506,6 +507,10 @@ GERMAN = {
     ),
     ("Let visible surfaces block the world's light from one another. Frames take slightly longer"): (
         "Sichtbare Flächen das Licht der Welt voneinander abhalten lassen. Einzelbilder dauern etwas länger"
+    ),
+    ("Let glossy objects reflect what stands around them. It is drawn from each of them when it has changed"): (
+        "Glänzende Objekte spiegeln lassen, was um sie herum steht. Es wird von jedem aus gezeichnet, wenn es sich "
+        "geändert hat"
     ),
     "Levels": "Stufen",
     "Levels of brightness that each light is shown in": "Helligkeitsstufen, in denen jede Lampe gezeigt wird",
@@ -656,6 +661,7 @@ GERMAN = {
         "{offset} von den Koordinaten abgezogen; spätere Dateien haben denselben Versatz"
     ),
     "Reduction": "Reduktion",
+    "Reflections": "Spiegelungen",
     "Render Meshes as": "Meshes als",
     "Render as": "Rendern als",
     "Render without them, and name them in a warning": "Ohne sie rendern und sie in einer Warnung nennen",

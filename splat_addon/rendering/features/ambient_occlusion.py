@@ -3,14 +3,26 @@
 
 from __future__ import annotations
 
+import math
+
 from ..passes.textures import SAMPLE_DEPTHS
-from ..plan.graph import Part
-from ..plan.hosts import LIT_HOSTS, Kind
+from ..plan.graph import Part, Texture
+from ..plan.hosts import LIT_HOSTS, Host, Kind
 from ..plan.planning import any_of
 from ..plan.tiles import tile_edge
+from . import sample_depths
 
 #: Search distance for occluders in a picture that is drawn in tiles, as a fraction of a tile's edge.
 TILE_SHARE = 1 / 8
+
+#: Pixels beside a sample whose shares are its own's mean.
+FILTERED = 2
+
+#: The share of the world's light that is left, and the depth.
+OPEN = Texture("occlusion", "RG32F")
+
+#: The golden ratio's steps keep any number of samples apart.
+_TURN = (math.sqrt(5) - 1) / 2
 
 
 def missing(planning) -> str:
@@ -24,6 +36,8 @@ def missing(planning) -> str:
         return f"{planning.model.name} shading does not look at the world's light"
     if planning.model.has_world and not any(scene.world):
         return "the world is dark"
+    if not planning.model.has_world and not math.isfinite(planning.settings.ambient_occlusion):
+        return f"{planning.model.name} shading has it only with a distance"
     if not scene.polygons and not any_of(lambda instance: not instance.is_transparent, planning.surfels):
         return "transparent layers have none, and nothing is opaque"
     return ""
@@ -36,33 +50,50 @@ def margin(planning) -> int:
     return int(TILE_SHARE * edge) if is_tiled and not planning.find(missing) else 0
 
 
+def height(planning) -> int:
+    """Of the whole picture, in pixels."""
+    return planning.camera.size[1]
+
+
+def _distance(tile) -> float:
+    """In the view's units; 0 for the one that follows from what is seen."""
+    distance = tile.settings.ambient_occlusion
+    return distance * tile.view.scale if math.isfinite(distance) else 0.0
+
+
 def _reach(tile) -> float:
     """Search distance in samples."""
-    pixels = tile.plan.find(margin) or max(tile.camera.size)
-    return pixels * tile.plan.samples
+    beside = tile.plan.find(margin)
+    return (beside - FILTERED if beside else max(tile.camera.size)) * tile.plan.samples
 
 
 VALUES = {
-    "occlusion_distance": ("float", lambda tile: tile.settings.ambient_occlusion * tile.view.scale),
+    "occlusion_distance": ("float", _distance),
+    "occlusion_height": ("float", lambda tile: tile.plan.find(height) * tile.plan.samples),
     "occlusion_reach": ("float", _reach),
+    "occlusion_shift": ("vec2", lambda tile: (tile.camera.sample & 3, (tile.camera.sample >> 2) & 3)),
+    "occlusion_turn": ("float", lambda tile: (0.5 + _TURN * tile.camera.sample) % 1),
 }
 
 
 def passes(planning):
-    """None of its own: what it reads is a pass of `sample_depths`."""
-    if planning.shown:
-        if why := planning.find(missing):
-            planning.skip("ambient occlusion", why)
-        else:
-            planning.has("ambient occlusion", _why(planning))
-    return ()
+    """The pass that stores what the depths around each sample leave."""
+    if not planning.shown:
+        return
+    if why := planning.find(missing):
+        planning.skip("ambient occlusion", why)
+        return
+    planning.find(height)
+    own = Part("ambient_occlusion", reads=(SAMPLE_DEPTHS,), writes=(OPEN,))
+    yield sample_depths.of_samples(planning, Host.OCCLUSION, _why(planning), own)
 
 
 def _why(planning) -> str:
-    settings, pixels = planning.settings, planning.find(margin)
-    why = f"surfaces within {settings.ambient_occlusion:g} keep the world's light from one another"
+    distance, pixels = planning.settings.ambient_occlusion, planning.find(margin)
+    within = f"within {distance:g}" if math.isfinite(distance) else "nearer than half as far as the viewer"
+    why = f"surfaces {within} keep the world's light from one another"
     if pixels:
-        why += f"; the picture is drawn in tiles, so they are looked for up to {pixels} pixels away"
+        why += f"; the picture is drawn in tiles, so they are looked for up to {pixels - FILTERED} pixels away"
     if any_of(lambda instance: instance.is_transparent, planning.surfels):
         why += "; transparent layers neither have it nor cause it"
     return why
@@ -74,4 +105,4 @@ def is_present(planning) -> bool:
 
 def parts(planning, p):
     if p.kind == Kind.OPAQUE and p.host in LIT_HOSTS:
-        yield Part("ambient_occlusion", reads=(SAMPLE_DEPTHS,))
+        yield Part("ambient_occlusion", reads=(OPEN,))

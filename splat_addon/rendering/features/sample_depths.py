@@ -14,13 +14,13 @@ def passes(planning):
     """The pass, which is trimmed if nobody reads it."""
     if not planning.shown:
         return
+    own = Part("sample_depths", writes=(SAMPLE_DEPTHS,))
+    yield of_samples(planning, Host.SAMPLE_DEPTHS, "depths around each sample are looked at", own)
+
+
+def of_samples(planning, host: Host, why: str, own: Part) -> Pass:
+    """A pass that looks at the surface that each sample sees."""
     samples = planning.settings.multisampling
-    own = Part(
-        "sample_depths",
-        writes=(SAMPLE_DEPTHS,),
-        constants=(("MEAN_OF", samples),),
-        choices=(("samples", "mean" if samples else "each"),),
-    )
+    own = own._replace(constants=(("MEAN_OF", samples),), choices=(("samples", "mean" if samples else "each"),))
     sums = depth_parts(planning, Kind.OPAQUE, reads=(COLOR_SUM, NORMAL_SUM))
-    why = "depths around each sample are looked at"
-    yield Pass("sample_depths", why, Host.SAMPLE_DEPTHS, fill_all, (own, sums, *polygons.joined(planning)))
+    return Pass(host.removesuffix(".frag"), why, host, fill_all, (own, sums, *polygons.joined(planning)))

@@ -38,7 +38,7 @@ def has_backdrop(planning: Planning) -> bool:
 def extent(planning: Planning) -> DepthExtent:
     """The depth extent of everything that may be in the picture."""
     settings = planning.settings
-    return depth_extent(planning.scene.table, planning.around, settings.epsilon, settings.epsilon_length)
+    return depth_extent(planning.scene.table.seen, planning.around, settings.epsilon, settings.epsilon_length)
 
 
 class DepthFormat(NamedTuple):

@@ -21,6 +21,7 @@ class Host(StrEnum):
     LIT_SPLATS = "lit_splats.frag"
     POLYGONS = "polygons.frag"
     SAMPLE_DEPTHS = "sample_depths.frag"
+    OCCLUSION = "occlusion.frag"
     LINES = "lines.frag"
     SHADING = "shading.frag"
     DEFERRED_LIGHTING = "deferred_lighting.frag"

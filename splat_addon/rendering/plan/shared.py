@@ -13,6 +13,7 @@ from ..detail.history import NOTHING, History
 from ..device.interface import Pipeline, Texture, texture_bytes
 from ..identity import Identities
 from ..passes.decisions import shadows
+from ..probes.pictures import ProbePictures
 from ..sample_views import SampleViews, clip_around
 from ..scene import Instance, Scene
 from ..scene.camera import Camera
@@ -31,10 +32,19 @@ _MOST_BYTES = 1 << 26
 
 class Shared:
     """A scene, the plan of its picture, and what depends on nothing else. samples: of the picture that are drawn one
-    right after the other. history: as of `plan`."""
+    right after the other. history: as of `plan`. probes: what the plan's probes see, if it has any."""
 
-    def __init__(self, scene: Scene, plan: FramePlan, settings: Settings, samples: int = 1, history: History = NOTHING):
+    def __init__(
+        self,
+        scene: Scene,
+        plan: FramePlan,
+        settings: Settings,
+        samples: int = 1,
+        history: History = NOTHING,
+        probes: ProbePictures | None = None,
+    ):
         self.scene, self.plan, self.settings, self.samples, self.history = scene, plan, settings, samples, history
+        self.probes = probes
         self._kept: dict[Hashable, object] = {}
         self._tables: dict[tuple[bytes, bytes], Texture] = {}
         self._programs: dict[tuple, tuple[Pass, Pipeline]] = {}
@@ -64,9 +74,9 @@ class Shared:
     def whole(self, camera: Camera) -> ClipRange:
         """The clip range of a picture that is drawn in tiles. camera: of all of it."""
         if not self._are_alike:
-            return clip_range(self.scene.table, camera, *self._epsilons)
+            return clip_range(self.scene.table.seen, camera, *self._epsilons)
         key = "whole", camera.matrix_world.tobytes()
-        return self.kept(key, lambda: clip_around(self.scene.table, camera, *self._epsilons))
+        return self.kept(key, lambda: clip_around(self.scene.table.seen, camera, *self._epsilons))
 
     @property
     def _epsilons(self) -> tuple[float, float]:
@@ -77,7 +87,7 @@ class Shared:
 
         whole: as of `build_view`.
         """
-        table, place, (epsilon, length) = self.scene.table, (tile, camera.matrix_world.tobytes()), self._epsilons
+        table, place, (epsilon, length) = self.scene.table.seen, (tile, camera.matrix_world.tobytes()), self._epsilons
         if not self._are_alike:
             return build_view(table, camera, epsilon, whole, epsilon_length=length), Repeats()
         view = self.kept(("views", place), lambda: SampleViews(table, camera, whole, epsilon, length)).of(camera)

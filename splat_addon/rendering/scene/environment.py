@@ -14,6 +14,7 @@ import numpy as np
 
 from .equirectangular import equirectangular_directions
 from .numbers import MAX_RADIANCE, check_range
+from .octahedral import octahedral_directions
 from .picture_sun import PictureSun, brightest_place, excess_of, sun_in
 from .texels import opaque_texels
 
@@ -109,16 +110,7 @@ class Environment:
 def level_directions() -> np.ndarray:
     """(34, 34, 3) unit directions of a level's texels; those of the border lie beyond the map's edge, folded back."""
     ticks = (np.arange(-1, LEVEL_SIDE + 1) + 0.5) / LEVEL_SIDE * 2 - 1
-    x, y = np.meshgrid(ticks, ticks)
-    for a, b in ((x, y), (y, x)):
-        beyond = np.abs(a) > 1
-        a[beyond] = np.sign(a[beyond]) * 2 - a[beyond]
-        b[beyond] = -b[beyond]
-    z = 1 - np.abs(x) - np.abs(y)
-    fold = np.maximum(-z, 0)
-    x, y = x - np.where(x >= 0, fold, -fold), y - np.where(y >= 0, fold, -fold)
-    directions = np.stack([x, y, z], axis=2)
-    return directions / np.linalg.norm(directions, axis=2, keepdims=True)
+    return octahedral_directions(*np.meshgrid(ticks, ticks))
 
 
 def reduced(pixels: np.ndarray, rows: int) -> np.ndarray:
@@ -147,7 +139,7 @@ def _with_pixels_all_around(pixels: np.ndarray) -> np.ndarray:
     return pixels
 
 
-def _lobe(cosines: np.ndarray, roughness: float) -> np.ndarray:
+def reflected_lobe(cosines: np.ndarray, roughness: float) -> np.ndarray:
     """GGX distribution for light at these cosines to the mirrored direction, with normal and viewer along it."""
     a2 = roughness**4
     half2 = (1 + np.clip(cosines, -1, 1)) / 2  # squared cosine of half the angle
@@ -159,6 +151,6 @@ def _sums(pixels: np.ndarray, directions: np.ndarray, share: np.ndarray) -> tupl
     of the weights. directions: (n, 3) of the pixels. share: (n,) solid angles."""
     cosines = level_directions().reshape(-1, 3) @ directions.T
     lit = np.maximum(cosines, 0) * share
-    lobes = (*(partial(_lobe, cosines, roughness) for roughness in LEVELS), lambda: 1.0)
+    lobes = (*(partial(reflected_lobe, cosines, roughness) for roughness in LEVELS), lambda: 1.0)
     found = [(weights @ pixels, weights.sum(axis=1, keepdims=True)) for weights in (lit * lobe() for lobe in lobes)]
     return tuple(np.stack(each) for each in zip(*found, strict=True))

@@ -197,6 +197,11 @@ class InstanceTable:
         return self.taken(~self.are_flattened)
 
     @cached_property
+    def seen(self) -> InstanceTable:
+        """Those that pictures show."""
+        return self.taken(self.of_kinds(lambda placed: placed.is_seen))
+
+    @cached_property
     def casting(self) -> InstanceTable:
         """Those that cast shadows and are not flattened."""
         return self.firm.taken(self.firm.of_kinds(lambda placed: placed.casts_shadow))

@@ -105,8 +105,8 @@ def shadow_maps(
     corners = casters.world_corners
     suns = sum(light.casts_shadow and light.kind == "sun" for light in scene.lights)
     lamps = sum(light.casts_shadow and light.kind != "sun" for light in scene.lights)
-    for_sun = receivers(scene.table, replace(viewers.sun, lens=None), lights_splats) if suns else None
-    for_lamps = [receivers(scene.table, camera, lights_splats) for camera in viewers.lamps] if lamps else []
+    for_sun = receivers(scene.table.seen, replace(viewers.sun, lens=None), lights_splats) if suns else None
+    for_lamps = [receivers(scene.table.seen, camera, lights_splats) for camera in viewers.lamps] if lamps else []
     finest = max(min(resolution * (FINER_SUN // atlas_columns(suns)), LARGEST_SIDE), resolution)
     made, without, count = [], 0, 0
     for number, light in enumerate(scene.lights):

@@ -77,8 +77,9 @@ def test_a_concave_model_is_nearer_to_cycles(make, seen, scene, picture, switch_
     Measured: 5 dB in the bowl, where light is reflected many times, 13 dB in the corner.
     """
     whole, made = seen(make)
+    scene.surfel_splatting.use_ambient_occlusion = False
     without = picture()
-    scene.surfel_splatting.use_ambient_occlusion, scene.surfel_splatting.ambient_occlusion_distance = True, 10.0
+    scene.surfel_splatting.use_ambient_occlusion = True
     present = picture()
     whole.hide_render, made.hide_render = False, True
     scene.cycles.max_bounces = 12
@@ -91,8 +92,10 @@ def test_a_concave_model_is_nearer_to_cycles(make, seen, scene, picture, switch_
 
 def test_the_settings_reach_the_engine(scene):
     properties = scene.surfel_splatting
+    assert final_settings(bpy.context.view_layer, scene, ("color",)).ambient_occlusion == np.inf
     properties.ambient_occlusion_distance = 2.5
+    assert final_settings(bpy.context.view_layer, scene, ("color",)).ambient_occlusion == 2.5
+    properties.use_ambient_occlusion = False
     assert final_settings(bpy.context.view_layer, scene, ("color",)).ambient_occlusion == 0.0
     properties.use_ambient_occlusion = True
-    assert final_settings(bpy.context.view_layer, scene, ("color",)).ambient_occlusion == 2.5
     assert viewport_settings(scene).ambient_occlusion == 2.5

@@ -1,0 +1,163 @@
+// References: Szirmay-Kalos, Aszodi, Lazanyi, Premecz, "Approximate Ray-Tracing on the GPU with Distance Impostors", 2005
+//             (a ray among the distances that a probe sees); Lagarde, Zanuttini, "Local Image-based Lighting With
+//             Parallax-corrected Cubemaps", 2012 (the place of what is seen, boxes that use a probe; a lobe is narrower
+//             for what is near the surface); Karis, "Real Shading in Unreal Engine 4", 2013 (blurred pictures).
+// Summary: what a surface in a probe's box reflects: what the probe sees where the reflected ray meets it, and the
+//          world beside that. The texture is that of rendering/probes/pictures.py. The twin of reference/reflections.py.
+
+#part world_light
+float reflecting = 0.0;  // 1 if there is a probe for this surface
+vec3 reflecting_place;  // from the probe's middle
+ivec2 reflecting_texels;  // where its pictures begin
+
+ivec2 probe_map_origin(int number) {
+  int side = int(frame.probe_side);
+  ivec2 origin = reflecting_texels;
+  if (number > 0) origin.x += side + 2;
+  if (number > 1) origin.y += side / 2 + 2;
+  for (int k = 2; k < number; k++) origin.x += (side >> k) + 2;
+  return origin;
+}
+
+// Interpolated in one of its maps, which begins at a texel and has a border.
+vec4 probe_map_at(ivec2 origin, int side, vec3 direction) {
+  vec3 d = direction / (abs(direction.x) + abs(direction.y) + abs(direction.z));
+  vec2 folded = vec2(d.x >= 0.0 ? 1.0 - abs(d.y) : abs(d.y) - 1.0, d.y >= 0.0 ? 1.0 - abs(d.x) : abs(d.x) - 1.0);
+  vec2 at = ((d.z < 0.0 ? folded : d.xy) * 0.5 + 0.5) * float(side) + 0.5;
+  ivec2 low = clamp(ivec2(floor(at)), ivec2(0), ivec2(side));
+  vec2 share = at - vec2(low);
+  ivec2 first = origin + low;
+  vec4 below = mix(texelFetch(probes, first, 0), texelFetch(probes, first + ivec2(1, 0), 0), share.x);
+  vec4 above = mix(texelFetch(probes, first + ivec2(0, 1), 0), texelFetch(probes, first + ivec2(1, 1), 0), share.x);
+  return mix(below, above, share.y);
+}
+
+// The same in the sharp map, whose texels have the inverse of a distance in the place of their opacity.
+vec4 probe_sharp_at(vec3 direction) {
+  int side = int(frame.probe_side);
+  vec3 d = direction / (abs(direction.x) + abs(direction.y) + abs(direction.z));
+  vec2 folded = vec2(d.x >= 0.0 ? 1.0 - abs(d.y) : abs(d.y) - 1.0, d.y >= 0.0 ? 1.0 - abs(d.x) : abs(d.x) - 1.0);
+  vec2 at = ((d.z < 0.0 ? folded : d.xy) * 0.5 + 0.5) * float(side) + 0.5;
+  ivec2 low = clamp(ivec2(floor(at)), ivec2(0), ivec2(side));
+  vec2 share = at - vec2(low);
+  vec4 total = vec4(0.0);
+  for (int k = 0; k < 4; k++) {
+    ivec2 corner = ivec2(k & 1, k >> 1);
+    vec2 near = mix(1.0 - share, share, vec2(corner));
+    vec4 texel = texelFetch(probes, reflecting_texels + low + corner, 0);
+    total += vec4(texel.rgb, texel.a > 0.0 ? 1.0 : 0.0) * (near.x * near.y);
+  }
+  return total;
+}
+
+float probe_inverse_distance(vec3 direction) {
+  return probe_map_at(reflecting_texels, int(frame.probe_side), direction).a;
+}
+
+const int PROBE_STEPS = 16;
+const int PROBE_HALVINGS = 5;
+
+// The direction from the probe in which a ray from the surface meets what the probe sees. away: how far that is from
+// the surface over how far it is from the probe. Steps are even in the angle that the ray's points have at the probe.
+vec3 probe_direction(vec3 direction, out float away) {
+  float inverse = inversesqrt(max(dot(reflecting_place, reflecting_place), 1e-30));
+  vec3 from = reflecting_place * inverse;
+  float cosine = dot(from, direction);
+  vec3 side = direction - from * cosine;
+  float sine = length(side);
+  away = 1.0;
+  if (sine < 1e-3) return direction;
+  side /= sine;
+  float turn = atan(sine, cosine), low = 0.0, high = turn;
+  bool is_before = probe_inverse_distance(from) < inverse;
+  for (int i = 1; i <= PROBE_STEPS; i++) {
+    float angle = turn * float(i) / float(PROBE_STEPS);
+    bool is_front = probe_inverse_distance(from * cos(angle) + side * sin(angle)) < inverse * sin(turn - angle) / sine;
+    if (is_before && !is_front) {
+      high = angle;
+      break;
+    }
+    is_before = is_front;
+    low = angle;
+  }
+  for (int i = 0; i < PROBE_HALVINGS; i++) {
+    float angle = 0.5 * (low + high);
+    bool is_front = probe_inverse_distance(from * cos(angle) + side * sin(angle)) < inverse * sin(turn - angle) / sine;
+    if (is_front) low = angle; else high = angle;
+  }
+  float angle = 0.5 * (low + high);
+  away = sin(angle) / sine;
+  return from * cos(angle) + side * sin(angle);
+}
+
+const int PROBE_LEVELS = 4;
+const float PROBE_ROUGHNESS[4] = float[4](0.4, 0.6, 0.8, 1.0);
+const int PROBE_LEVEL_SIDE = 32;
+// Blurred maps give way to levels from this roughness on.
+const float PROBE_MAPS_END = 0.3;
+// A texel of the map that is looked up, over the lobe's half width: the square of the roughness.
+const float PROBE_TEXEL = 1.4;
+
+vec4 probe_level_at(int level, vec3 direction) {
+  ivec2 origin = reflecting_texels + ivec2(level * (PROBE_LEVEL_SIDE + 2), int(frame.probe_side) + 2);
+  return probe_map_at(origin, PROBE_LEVEL_SIDE, direction);
+}
+
+vec4 probe_blurred_at(vec3 direction, float roughness) {
+  int level = 0;
+  while (level < PROBE_LEVELS - 2 && roughness > PROBE_ROUGHNESS[level + 1]) level++;
+  float share = (roughness - PROBE_ROUGHNESS[level]) / (PROBE_ROUGHNESS[level + 1] - PROBE_ROUGHNESS[level]);
+  vec4 finer = probe_level_at(level, direction);
+  return share > 0.0 ? mix(finer, probe_level_at(level + 1, direction), min(share, 1.0)) : finer;
+}
+
+vec4 probe_mapped_at(vec3 direction, float roughness) {
+  // a texel of a map of side n is 3.5 / n wide
+  float texels = PROBE_TEXEL * roughness * roughness * frame.probe_side / 3.5449077;
+  float number = clamp(log2(max(texels, 1.0)), 0.0, float(PROBE_MAPS - 1));
+  int low = int(number);
+  vec4 finer = low == 0 ? probe_sharp_at(direction)
+      : probe_map_at(probe_map_origin(low), int(frame.probe_side) >> low, direction);
+  if (number == float(low)) return finer;
+  vec4 coarser = probe_map_at(probe_map_origin(low + 1), int(frame.probe_side) >> (low + 1), direction);
+  return mix(finer, coarser, number - float(low));
+}
+
+void reflections_reflected(inout vec3 light, vec3 direction, float roughness) {
+  if (!(reflecting > 0.0)) return;
+  float away;
+  vec3 toward = probe_direction(normalize(mat3(frame.to_probes) * direction), away);
+  float rough = min(roughness * sqrt(max(away, 0.0)), 1.0);
+  float share = clamp((rough - PROBE_MAPS_END) / (PROBE_ROUGHNESS[0] - PROBE_MAPS_END), 0.0, 1.0);
+  vec4 seen = vec4(0.0);
+  if (share < 1.0) seen += (1.0 - share) * probe_mapped_at(toward, rough);
+  if (share > 0.0) seen += share * probe_blurred_at(toward, rough);
+  light = seen.rgb + (1.0 - seen.a) * sent_reflection(direction, roughness);
+}
+
+#part shaded_sample
+// Beyond this share of its half-axes a surface belongs to a probe's box if it faces away from its middle, as what stands
+// on something does; up to the other there is room for rounding.
+const float PROBE_INSIDE = 0.95;
+const float PROBE_OUTSIDE = 1.01;
+
+void reflections_prepare(inout Shaded s) {
+  vec3 position = (frame.to_probes * vec4(eye_position(s.texel, s.mean.depth), 1.0)).xyz;
+  vec3 normal = mat3(frame.to_probes) * s.normal;
+  int side = int(frame.probe_side), count = int(frame.probe_count);
+  reflecting = 0.0;
+  for (int k = 0; k < count; k++) {
+    vec3 at;
+    for (int axis = 0; axis < 3; axis++) {
+      vec4 row = texelFetch(probes, ivec2(PROBE_HEADER * k + axis, 0), 0);
+      at[axis] = abs(dot(row.xyz, position) + row.w);
+    }
+    vec3 place = position - texelFetch(probes, ivec2(PROBE_HEADER * k + 3, 0), 0).xyz;
+    float reach = max(max(at.x, at.y), at.z);
+    if (reach > PROBE_OUTSIDE || (reach > PROBE_INSIDE && !(dot(normal, place) > 0.0))) continue;
+    reflecting = 1.0;
+    reflecting_place = place;
+    reflecting_texels = ivec2(0, 1 + k * (side + PROBE_LEVEL_SIDE + 4));
+    break;
+  }
+}

@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Draws the pictures of a scene's probes, and keeps them as long as nothing in the scene changes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import fields, replace
+from weakref import ref
+
+import numpy as np
+
+from ..assembly.panorama_faces import panorama_frame
+from ..frame import Frame
+from ..scene import Scene
+from ..scene.camera import Camera
+from ..scene.octahedral import Octahedral
+from ..scene.panorama import Panorama
+from ..settings import Settings
+from ..shadows.receivers import Viewers
+from .pictures import ProbePictures, side_of
+from .places import Probe
+
+#: (what a probe sees, a face's camera, the cameras that its shadow maps serve, settings) -> Frame
+Draw = Callable[[Scene, Camera, Viewers, Settings], Frame]
+
+#: Of a probe's radius, how far away something must be to be seen; and of the farthest thing, how far it sees.
+_NEAREST, _FARTHEST = 1e-3, 1.01
+
+
+class Probes:
+    """The pictures of one renderer's last scene."""
+
+    def __init__(self):
+        self._kept: tuple[tuple, ProbePictures] | None = None
+
+    def pictures(self, scene: Scene, probes: tuple[Probe, ...], settings: Settings, draw: Draw) -> ProbePictures:
+        """What the probes see: the same object as long as the scene is."""
+        plain, size = _plain(settings), (side_of(probes) + 2,) * 2
+        made_from = probes, plain, _contents(scene)
+        if self._kept is None or self._kept[0] != made_from:
+            frames = []
+            for probe in probes:
+                seen, panorama = _seen(scene, probe), _panorama(scene, probe, size)
+
+                def drawn(camera, of, settings, progress, seen=seen) -> Frame:
+                    return draw(seen, camera, of, settings)
+
+                frames.append(panorama_frame(panorama, 0, plain, drawn))
+            self._kept = made_from, ProbePictures(probes, frames)
+        return self._kept[1]
+
+    def forget(self) -> None:
+        self._kept = None
+
+
+def _plain(settings: Settings) -> Settings:
+    """Settings for what probes see: blurred and filtered later, and without what it reflects itself."""
+    return replace(
+        settings, method="quad", lines=None, eye_dome=None, supersampling=1, samples=1, multisampling=0,
+        edge_threshold=0.0, filter_variance=Settings.filter_variance, reflections=False, transparent_film=True,
+        as_printed=False, outputs=("color", "depth"), profile=False,
+    )  # fmt: skip
+
+
+def _panorama(scene: Scene, probe: Probe, size: tuple[int, int]) -> Panorama:
+    matrix = np.eye(4)
+    matrix[:3, 3] = probe.middle
+    away = np.linalg.norm(scene.table.world_corners.reshape(-1, 3) - probe.middle, axis=1).max()
+    near = _NEAREST * probe.radius
+    return Panorama(matrix, Octahedral(size[0] - 2), size, near, max(_FARTHEST * away, 2 * near))
+
+
+def _seen(scene: Scene, probe: Probe) -> Scene:
+    """The scene in which what is left out only casts its shadow."""
+    left_out = {id(scene.table.placed[row]) for row in probe.left_out}
+
+    def of(placed) -> tuple:
+        return tuple(replace(one, is_seen=False) if id(one) in left_out else one for one in placed)
+
+    return replace(scene, surfels=of(scene.surfels), polygons=of(scene.polygons)) if left_out else scene
+
+
+#: Fields of instances that change nothing in a picture.
+_UNSEEN = {"matrix_world", "light_set", "name", "index", "split_distance", "split_length", "may_change"}
+
+
+def _contents(scene: Scene) -> tuple:
+    """All that the pictures depend on, compared by value, because a final render exports another scene for each frame.
+    Nothing in it keeps surfels, polygons or images in memory."""
+    table = scene.table
+    arrays = table.matrices, table.splits, table.slots, table.kind_of, table.light_sets
+    kinds = [[type(kind.placed), *map(_value, _fields(kind.placed, _UNSEEN))] for kind in table.kinds]
+    around = [_value(value) for value in _fields(scene, {"surfels", "polygons"})]
+    return [array.tobytes() for array in arrays], kinds, around
+
+
+def _fields(owner, but: set[str]) -> list:
+    return [getattr(owner, field.name) for field in fields(owner) if field.name not in but]
+
+
+def _value(value):
+    """What is compared of a value: itself, or which object it is."""
+    if isinstance(value, tuple):
+        return tuple(map(_value, value))
+    return value if value.__hash__ is not object.__hash__ else ref(value)

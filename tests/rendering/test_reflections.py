@@ -1,0 +1,249 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Glossy objects reflect what stands around them: a ball of metal is compared with rays in closed form."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from splat_addon.reference import scenes
+from splat_addon.reference.reflections import map_at, met_directions
+from splat_addon.rendering import (
+    Camera,
+    Light,
+    Material,
+    PolygonInstance,
+    Renderer,
+    Scene,
+    Settings,
+    look_at,
+    make_polygons,
+    plan,
+)
+from splat_addon.rendering.plan.programs import describe
+from splat_addon.rendering.probes import drawing, pictures
+from splat_addon.rendering.probes.pictures import LEVEL_SIDE, _lobes
+from splat_addon.rendering.probes.places import MAX_PROBES, probes_of
+from splat_addon.rendering.scene.finish import Finish
+from splat_addon.rendering.scene.octahedral import Octahedral, bordered
+
+SETTINGS = Settings(method="quad", reflections=True)
+SKY, RED, GREEN = np.array([(0.1, 0.2, 0.9), (0.8, 0.1, 0.1), (0.1, 0.7, 0.1)])
+HEIGHT, RADIUS, BORDER = 1.0, 0.5, 0.4
+CHROME = Material(roughness=0.0, metallic=1.0)
+
+
+def glowing(color):
+    return Material(roughness=1.0, ior=1.0, emission=tuple(color))
+
+
+def floor():
+    """A wide floor at the height 0, which glows red on the left and green on the right."""
+    places = [(-60, -60, 0), (BORDER, -60, 0), (BORDER, 60, 0), (-60, 60, 0), (60, -60, 0), (60, 60, 0)]
+    made = make_polygons(places, [(0, 1, 2), (0, 2, 3), (1, 4, 5), (1, 5, 2)], colors=np.tile((0.0, 0, 0, 1), (12, 1)))
+    return replace(made, materials=np.repeat(np.array([0, 1], np.int32), 6))
+
+
+def ball(material=CHROME, place=(0.0, 0.0, HEIGHT), radius=RADIUS, **fields):
+    matrix = np.diag((radius, radius, radius, 1.0))
+    matrix[:3, 3] = place
+    white = scenes.round_polygons(48)
+    white = replace(white, colors=np.ones_like(white.colors))
+    return PolygonInstance(white, matrix, materials=(material,), **fields)
+
+
+FLOOR = PolygonInstance(floor(), materials=(glowing(RED), glowing(GREEN)))
+MIRROR = Scene(polygons=[ball(), FLOOR], world=tuple(SKY))
+
+
+def camera(size=(64, 64)):
+    return Camera.perspective(look_at((0.4, -4, 1.4), (0, 0, 1)), 0.32, size, near=0.1, far=500)
+
+
+def rays_of(view):
+    """Whether each pixel sees the ball, and where, and what it reflects there: (h, w), (n, 3) and (n, 3)."""
+    eye = view.matrix_world[:3, 3]
+    along = view.points_at(np.ones(view.size[::-1])) - eye
+    along /= np.linalg.norm(along, axis=2, keepdims=True)
+    middle = np.array((0, 0, HEIGHT)) - eye
+    nearest = along @ middle
+    square = RADIUS**2 - (middle @ middle - nearest**2)
+    hits = square > (0.15 * RADIUS) ** 2  # not at the rim, which is a polygon
+    distance = nearest[hits] - np.sqrt(square[hits])
+    place = eye + distance[:, None] * along[hits]
+    normal = (place - (0, 0, HEIGHT)) / RADIUS
+    mirrored = along[hits] - 2 * (along[hits] * normal).sum(axis=1, keepdims=True) * normal
+    return hits, place, mirrored
+
+
+def true_colors(place, direction):
+    """What rays meet: the floor, or the sky."""
+    down = direction[:, 2] < -1e-3
+    at = place[:, 0] - direction[:, 0] * place[:, 2] / np.where(down, direction[:, 2], -1.0)
+    return np.where(down[:, None], np.where(at[:, None] < BORDER, RED, GREEN), SKY)
+
+
+def test_a_ball_of_metal_reflects_what_rays_meet(render):
+    """The border of the two colours lies where rays say, and not where the middle of the ball sees it."""
+    view = camera()
+    hits, place, direction = rays_of(view)
+    ours, true = render(MIRROR, view, SETTINGS).color[hits][:, :3], true_colors(place, direction)
+    assert len({tuple(color) for color in true}) == 3
+    off = np.abs(ours - true).max(axis=1)
+    assert np.mean(off < 0.05) > 0.95 and np.median(off) < 0.01
+    from_middle = true_colors(np.tile((0, 0, HEIGHT), (len(place), 1)), direction)
+    apart = (from_middle != true).any(axis=1)
+    assert apart.sum() > 10
+    assert off[apart].mean() < 0.35 * np.abs(ours - from_middle)[apart].max(axis=1).mean()
+    bare = render(MIRROR, view, replace(SETTINGS, reflections=False)).color[hits][:, :3]
+    assert np.mean(np.abs(bare - true).max(axis=1) < 0.05) < 0.6
+
+
+@pytest.fixture
+def coarse(monkeypatch):
+    """Probes with few texels, where it does not matter what is seen in them."""
+    monkeypatch.setattr(pictures, "SHARP_SIDE", pictures.BLUNT_SIDE)
+
+
+@pytest.fixture
+def seeing(on_device):
+    """seeing(scene, camera) -> its frame, and that of its first probe."""
+
+    def draw(device, scene, view):
+        renderer = Renderer(device)
+        return renderer.render(scene, view, SETTINGS), renderer.probes._kept[1]._frames[0]
+
+    return lambda *what: on_device(lambda device: draw(device, *what))
+
+
+def test_the_shader_meets_what_its_twin_meets(seeing):
+    view = camera()
+    hits, place, direction = rays_of(view)
+    frame, seen = seeing(MIRROR, view)
+    ours = frame.color[hits][:, :3]
+    met = map_at(seen.color, met_directions(seen, place - (0, 0, HEIGHT), direction))
+    twin = met[:, :3] + (1 - met[:, 3:]) * SKY
+    off = np.abs(ours - twin).max(axis=1)
+    assert np.mean(off < 0.03) > 0.97
+
+
+def test_a_rough_metal_reflects_the_mean_of_its_lobe(render):
+    """Halfway up, a very rough ball mixes floor and sky, and a smooth one shows either."""
+    view = camera()
+    hits, _, direction = rays_of(view)
+    rough = replace(MIRROR, polygons=[ball(Material(roughness=0.7, metallic=1.0)), FLOOR])
+    ours = render(rough, view, SETTINGS).color[hits][:, :3]
+    up, down = direction[:, 2] > 0.8, direction[:, 2] < -0.5
+    assert ours[up].mean(axis=0) == pytest.approx(SKY, abs=0.12)
+    assert ours[down, 2].mean() < 0.25 < ours[np.abs(direction[:, 2]) < 0.2, 2].mean() < 0.7
+    assert np.abs(np.diff(np.sort(ours[:, 2]))).max() < 0.05
+
+
+def test_a_ball_does_not_see_itself_but_its_shadow(seeing, coarse):
+    sunny = Scene(
+        polygons=[ball(), PolygonInstance(scenes.polygons(10)[0].polygons[0].polygons)],
+        lights=(Light("sun", energy=3, direction=(0, 0, -1), casts_shadow=True),),
+    )
+    _, seen = seeing(sunny, camera())
+    directions = Octahedral(len(seen.color) - 2).directions(*_places(len(seen.color)))
+    below, aside = directions[..., 2] < -0.99, np.abs(directions[..., 2] + 0.85) < 0.01
+    assert seen.depth[below].min() > 2 * RADIUS
+    assert seen.color[below][:, 3].min() > 0.99 and seen.color[below][:, :3].max() < 0.01
+    assert seen.color[aside & (seen.color[..., 3] > 0.99)][:, :3].max() > 0.1
+
+
+def _places(count):
+    ticks = (np.arange(count) + 0.5) / count
+    return ticks[None, :], ticks[:, None]
+
+
+def test_probes_are_drawn_once_for_a_scene(on_device, monkeypatch, coarse):
+    """Another camera, another sample and an equal scene have the same; whatever changes is seen as it is."""
+    drawn, real = [], drawing.panorama_frame
+    monkeypatch.setattr(drawing, "panorama_frame", lambda *given: drawn.append(given) or real(*given))
+    small, parts, moved = camera((8, 8)), MIRROR.polygons, np.eye(4)
+    moved[2, 3] = -0.1
+    same = [(MIRROR, small), (MIRROR, camera((9, 7))), (replace(MIRROR, polygons=[replace(p) for p in parts]), small)]
+    others = (
+        {"world": (1, 1, 1)},
+        {"polygons": [parts[0], replace(FLOOR, matrix_world=moved)]},
+        {"polygons": [parts[0], replace(FLOOR, materials=(glowing(GREEN),))]},
+        {"lights": (Light("sun"),)},
+    )
+
+    def draw(device):
+        renderer = Renderer(device)
+        for scene, view in (*same, *((replace(MIRROR, **other), small) for other in others)):
+            renderer.render(scene, view, replace(SETTINGS, samples=2))
+            yield len(drawn)
+
+    assert on_device(lambda device: list(draw(device))) == [1, 1, 1, 2, 3, 4, 5]
+
+
+DULL = Material(roughness=0.5)
+
+
+@pytest.mark.parametrize(
+    ("scene", "settings", "why"),
+    [
+        (MIRROR, {"reflections": False}, "they are switched off"),
+        (MIRROR, {"shading": "phong"}, "phong shading has none"),
+        (replace(MIRROR, polygons=[ball(DULL), FLOOR]), {}, "nothing is glossy"),
+        (Scene(polygons=[replace(FLOOR, materials=(CHROME,))], world=tuple(SKY)), {}, "nothing is glossy"),
+    ],
+)
+def test_where_there_are_none_nothing_is_there_and_the_plan_says_why(scene, settings, why):
+    made = plan(scene, camera(), replace(SETTINGS, **settings))
+    usual = plan(scene, camera(), replace(SETTINGS, **{**settings, "reflections": False}))
+    assert dict(made.skipped)["reflections"] == why
+    assert [str(p.parts) for p in made.passes] == [str(p.parts) for p in usual.passes]
+    lit = next(p for p in made.passes if p.host == "shading.frag")
+    assert "probe" not in describe(made, lit, "fullscreen.vert").fragment
+
+
+@pytest.mark.parametrize(
+    ("material", "is_glossy"),
+    [
+        (Material(roughness=0.9, metallic=1.0), True),
+        (Material(roughness=0.1), True),
+        (Material(roughness=0.1, ior=1.05), False),
+        (DULL, False),
+        (Material(roughness=0.8, finish=Finish(coat=1.0)), True),
+    ],
+)
+def test_metals_coats_and_polished_surfaces_are_glossy(material, is_glossy):
+    assert len(probes_of(Scene(polygons=[ball(material)]), camera())[0]) == is_glossy
+
+
+def test_what_lies_in_an_object_is_left_out_with_it_unless_the_camera_is_inside():
+    inner, outer = ball(DULL, radius=0.1), ball(radius=RADIUS)
+    beside = ball(DULL, place=(0, 3, HEIGHT))
+    scene = Scene(polygons=[inner, beside, outer])
+    (probe,), _ = probes_of(scene, camera())
+    assert probe.left_out == (0, 2) and probe.middle == pytest.approx((0, 0, HEIGHT), abs=1e-6)
+    within = Camera.perspective(look_at((0, -0.3, HEIGHT), (0, 1, HEIGHT)), 0.5, (8, 8))
+    assert probes_of(scene, within)[0][0].left_out == ()
+
+
+def test_of_many_the_largest_have_probes_and_the_plan_counts_the_others():
+    many = [ball(place=(3 * k, 0, 0), radius=0.1 + 0.01 * k) for k in range(MAX_PROBES + 3)]
+    found, without = probes_of(Scene(polygons=many), camera())
+    assert len(found) == MAX_PROBES and without == 3 and min(p.radius for p in found) > 0.129
+    made = plan(Scene(polygons=many), camera(), SETTINGS)
+    assert dict(made.skipped)["reflections of 3 objects"] == f"there is room for {MAX_PROBES} probes"
+
+
+def test_the_border_of_a_map_is_beyond_its_edge():
+    directions = Octahedral(8).directions(*_places(10))
+    np.testing.assert_allclose(bordered(directions[1:-1, 1:-1]), directions, atol=1e-12)
+    assert np.linalg.norm(directions, axis=2) == pytest.approx(1)
+
+
+def test_lobes_are_around_their_direction_and_keep_what_is_even():
+    ticks = _places(LEVEL_SIDE + 2)
+    directions = Octahedral(LEVEL_SIDE).directions(*ticks)[1:-1, 1:-1].reshape(-1, 3)
+    for weights in _lobes():
+        assert weights.sum(axis=1) == pytest.approx(1, abs=1e-4)
+        mean = weights @ directions
+        mean /= np.linalg.norm(mean, axis=1, keepdims=True)
+        assert (mean * directions).sum(axis=1).min() > 0.995
