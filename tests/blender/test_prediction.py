@@ -48,6 +48,20 @@ def test_a_mesh_without_faces_predicts_nothing(add_mesh):
     assert (extent.predict({"resolution": 16})[0], extent.predict({"spacing": 0.1})[0]) == (0, 0)
 
 
+def test_a_sidebar_that_opens_is_drawn_before_the_count_is_measured(cube):
+    """A measurement would leave it half faded in for as long as it takes."""
+    is_registered = bpy.app.timers.is_registered
+    prediction.forget_all()
+    assert prediction.known_extents([[cube]], PLAIN) is None
+    assert [is_registered(timer) for timer in prediction._TIMERS] == [True, False]
+    bpy.app.timers.unregister(prediction._wait_for_drawing)
+    prediction._wait_for_drawing()
+    assert [is_registered(timer) for timer in prediction._TIMERS] == [False, True] and prediction._wanted
+    bpy.app.timers.unregister(prediction._measure_wanted)
+    prediction._measure_wanted()
+    assert not prediction._wanted and prediction.known_extents([[cube]], PLAIN)
+
+
 def test_a_changed_modifier_forgets_the_count(cube, known):
     cube.modifiers.new("array", "ARRAY")
     bpy.context.view_layer.update()

@@ -65,7 +65,7 @@ def manual_pages() -> int:
 
 
 def timers() -> list:
-    return [f for f in (prediction._measure_wanted,) if bpy.app.timers.is_registered(f)]
+    return [f for f in prediction._TIMERS if bpy.app.timers.is_registered(f)]
 
 
 #: name -> a function of what the add-on has put into Blender; empty or 0 when it is away

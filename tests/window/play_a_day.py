@@ -53,9 +53,8 @@ def watch_drawing():
 
 def predicted():
     """Wait until the sidebar has the counts that it predicts, and shows them."""
-    is_waiting = lambda: bpy.app.timers.is_registered(extension("conversion.prediction")._measure_wanted)  # noqa: E731
     yield from redrawn()
-    yield from until(lambda: not is_waiting(), "the prediction is made")
+    yield from until(lambda: not extension("conversion.prediction")._wanted, "the prediction is made")
     yield from redrawn()
 
 

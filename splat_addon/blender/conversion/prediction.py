@@ -32,8 +32,10 @@ from .gathering import frame_of, gather
 from .mesh_conversion import Choices, flat_places
 from .placement import relative
 
-#: Delay that combines the changes of a stroke or a drag into one measurement.
+#: Delay that combines the changes of a stroke or a drag into one measurement. A sidebar that opens fades in meanwhile.
 _DELAY_SECONDS = 0.2
+#: Further delay, in which what has faded in is drawn: a measurement would leave it half there for as long as it takes.
+_DRAWING_SECONDS = 0.01
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,8 +93,8 @@ def known_extents(groups: list[list[bpy.types.Object]], choices: Choices) -> lis
     if not missing:
         return [_extents[key] for key in keys]
     _wanted.update({key: choices for key in missing})
-    if not bpy.app.timers.is_registered(_measure_wanted):
-        bpy.app.timers.register(_measure_wanted, first_interval=_DELAY_SECONDS)
+    if not any(map(bpy.app.timers.is_registered, _TIMERS)):
+        bpy.app.timers.register(_wait_for_drawing, first_interval=_DELAY_SECONDS)
     return None
 
 
@@ -128,6 +130,12 @@ _wanted: dict[tuple, Choices] = {}
 
 
 @unattended("Counting surfels for the sidebar")
+def _wait_for_drawing() -> None:
+    """Measure in a later round of Blender's main loop; this one ends with drawing."""
+    bpy.app.timers.register(_measure_wanted, first_interval=_DRAWING_SECONDS)
+
+
+@unattended("Counting surfels for the sidebar")
 def _measure_wanted() -> None:
     depsgraph = bpy.context.evaluated_depsgraph_get()
     objects = {object_.session_uid: object_ for object_ in bpy.context.view_layer.objects}
@@ -141,6 +149,10 @@ def _measure_wanted() -> None:
         for area in window.screen.areas:
             if area.type == "VIEW_3D":
                 area.tag_redraw()
+
+
+#: In the order in which they run.
+_TIMERS = _wait_for_drawing, _measure_wanted
 
 
 @unattended("Following changes for the sidebar")
@@ -173,6 +185,6 @@ register, _unregister_handlers = with_handlers(
 
 def unregister():
     _unregister_handlers()
-    if bpy.app.timers.is_registered(_measure_wanted):
-        bpy.app.timers.unregister(_measure_wanted)
+    for timer in filter(bpy.app.timers.is_registered, _TIMERS):
+        bpy.app.timers.unregister(timer)
     forget_all()
