@@ -23,6 +23,7 @@ ADD_RENDER_PRESET = "render.surfel_preset_add"
 ADD_CONVERSION_PRESET = "object.surfel_conversion_preset_add"
 UPDATE_SURFELS = "object.surfels_update"
 STORE_SURFELS = "object.surfels_to_file"
+SELECT_STRAYS = "object.surfels_select_strays"
 SHOW_SURFELS = "view3d.surfels_show"
 SURFELS_OR_SOURCE = "object.surfels_or_source"
 

@@ -8,6 +8,7 @@ from . import (
     import_file,
     render_preset,
     scan_look,
+    select_strays,
     show_surfels,
     store_surfels,
     surfels_from_mesh,
@@ -25,6 +26,7 @@ MODULES = (
     import_file,
     render_preset,
     scan_look,
+    select_strays,
     show_surfels,
     surfels_or_source,
 )

@@ -134,6 +134,18 @@ GERMAN = {
         "Textur, in deren Farbverlauf die Werte nachgeschlagen werden; ohne eine ein Verlauf gleichmäßiger Helligkeit"
     ),
     "Scan Look": "Scan-Aussehen",
+    "Select Strays": "Streupunkte auswählen",
+    "Select surfels that stand alone or are much larger than those around them, in Edit Mode; nothing is deleted": (
+        "Surfels auswählen, die allein stehen oder viel größer sind als die um sie herum, im Bearbeitungsmodus; nichts "
+        "wird gelöscht"
+    ),
+    "Higher values select surfels that are less stray. 1 selects about what an import leaves out": (
+        "Höhere Werte wählen weniger abseits liegende Surfels aus. 1 wählt etwa aus, was ein Import weglässt"
+    ),
+    "Select an object of surfels, in Object Mode or Edit Mode": (
+        "Ein Objekt aus Surfels auswählen, im Objekt- oder Bearbeitungsmodus"
+    ),
+    "Selected {count:,} of {all:,} surfels; X deletes them": "{count:,} von {all:,} Surfels ausgewählt; X löscht sie",
     (
         "Show scans as they were captured, without any light: choose Surfel Splatting, Captured Color, Eye-Dome "
         "Lighting and the view transform Standard"

@@ -35,6 +35,7 @@ from ..ids import (
     OBJECT_SETTINGS,
     POINTS_SETTINGS,
     SCAN_LOOK,
+    SELECT_STRAYS,
     SHOW_SURFELS,
     SIDEBAR_PANEL,
     SIDEBAR_TAB,
@@ -192,6 +193,7 @@ def _draw_scan(layout: bpy.types.UILayout, what: Chosen) -> None:
     if what.kind is not SURFELS or what.source is not None:
         return
     layout.operator(SCAN_LOOK, icon="SHADING_TEXTURE")
+    layout.operator(SELECT_STRAYS, icon="RESTRICT_SELECT_OFF")
     column = layout.column()
     column.use_property_split = True
     column.use_property_decorate = False
