@@ -18,7 +18,7 @@ from dataclasses import dataclass, fields, is_dataclass
 import numpy as np
 
 from ..array_files import StoredArrays, opened_arrays, write_arrays
-from ..surfels import LAYOUT, OPTIONAL_LAYOUT, empty_surfels
+from ..surfels import LAYOUT, empty_surfels
 from .ldc.depth_cube import surface_of
 from .ldc.missed_components import SampledSurface, missed_components
 from .ldc.scan_conversion import Spans, expand
@@ -27,8 +27,9 @@ from .options import SamplingOptions
 from .progress import Progress, stage
 from .refine.flat_blocks import BLOCKS, Large
 from .sample import Sampling, SamplingRun
+from .table import COLUMNS, SampleTable
 
-_VERSION = 6
+_VERSION = 7
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +122,7 @@ def _order(spans: Spans) -> np.ndarray:
     return np.lexsort((spans.columns, spans.rows, spans.triangles))
 
 
-def _in_order(blocks: list[Block]) -> tuple[tuple[Spans, ...], dict[str, np.ndarray]]:
+def _in_order(blocks: list[Block]) -> tuple[tuple[Spans, ...], SampleTable]:
     """The spans of all blocks, and the values of their samples, in a single machine's order."""
     sizes = [[int(spans.counts.sum(dtype=np.int64)) for spans in block.images] for block in blocks]
     starts = np.cumsum([0, *(size for block in sizes for size in block)])[:-1].reshape(-1, 3)
@@ -252,7 +253,7 @@ def read_request(path: str | os.PathLike) -> dict:
     return request
 
 
-#: field of `Surfels` -> its number of columns and type
-_LAYOUTS = {name: (columns, kind) for name, (columns, kind, *_) in {**LAYOUT, **OPTIONAL_LAYOUT}.items()}
+#: column of samples -> its number of columns and type
+_LAYOUTS = {name: (columns, kind) for name, (columns, kind, _) in COLUMNS.items()}
 #: what the file should be, and what to do if it is not
 _KIND = "a file of blocks", "convert the block again"

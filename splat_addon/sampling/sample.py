@@ -16,7 +16,7 @@ import numpy as np
 
 from ..large_surfels import BLEND_STEPS, LARGE_SIZE, STEPS_OF_LARGE
 from ..normal_fields import NORMAL_FIELDS, turned
-from ..surfels import LAYOUT, OPTIONAL_LAYOUT, Surfels, empty_surfels
+from ..surfels import LAYOUT, Surfels, empty_surfels
 from .attributes.blend_depths import blend_depths
 from .attributes.lifts import edge_bulges, lifts
 from .attributes.normal_changes import fields_on_triangles
@@ -29,7 +29,7 @@ from .edges.clipping import clip_fields, clippings
 from .edges.contacts import crossed_cells, find_contacts
 from .edges.gaps import BorderPlaces, gap_surfels
 from .edges.meetings import by_facing
-from .ldc.depth_cube import TRIANGLES, axes_of, depth_cube, in_bands, row_bands, rows_of, triangles_of
+from .ldc.depth_cube import axes_of, depth_cube, in_bands, row_bands, rows_of, triangles_of
 from .ldc.grid import make_grid
 from .ldc.missed_components import SampledSurface, missed_components
 from .ldc.reductions import find_reduction
@@ -49,6 +49,7 @@ from .refine.flat_blocks import LARGEST, LEAST_AREA, RING, Large, divided
 from .refine.flat_faces import flat_faces
 from .refine.image_samples import inside_triangles
 from .refine.two_sided import cards_of, mostly
+from .table import SampleTable, check_table, empty_column, joined
 from .workers import in_order
 
 #: Times of the steps that need neighbouring samples, relative to one another: clipping, fitting planes, merging.
@@ -178,20 +179,15 @@ class SamplingRun:
         is_possible = options.fits_blending and self._chosen.merge is None and options.count is None
         return options.tolerance is not None and is_possible
 
-    def filled(
-        self, images: tuple[Spans, ...], report: Callable[[float], None], edge: int = 1
-    ) -> dict[str, np.ndarray]:
-        """Field of `Surfels` -> values at the samples of these spans, as plain sampling gives them. edge: of the block
-        that each sample covers, in cells."""
+    def filled(self, images: tuple[Spans, ...], report: Callable[[float], None], edge: int = 1) -> SampleTable:
+        """The samples of these spans, as plain sampling gives them. edge: of the block that each sample covers, in
+        cells."""
         total = sum(int(spans.counts.sum(dtype=np.int64)) for spans in images)
-        layouts = LAYOUT | {name: OPTIONAL_LAYOUT[name] for name in (*self._sampler.optional, *self._uv_fields)}
-        arrays = {n: np.empty((total, c) if c > 1 else total, dtype) for n, (c, dtype, *_) in layouts.items()}
-        if self._bends is not None:
-            arrays["blend_depth"] = np.empty(total, np.float32)
-        if self._bulges is not None:
-            arrays["lift"] = np.empty(total, np.float32)  # object units until all half-axes are final
+        names = [*LAYOUT, *self._sampler.optional, *self._uv_fields]
+        names += ["blend_depth"] * (self._bends is not None) + ["rise"] * (self._bulges is not None)
         if self.options.normal_fields and self.mesh.corner_normals is not None:
-            arrays |= {name: np.empty((total, 2), np.int16) for name in NORMAL_FIELDS}
+            names += NORMAL_FIELDS
+        arrays: SampleTable = {name: empty_column(name, total) for name in names}
         half_size = (self.options.splat_size if edge == 1 else LARGE_SIZE * edge) * self.grid.spacing
         of_mesh = self._sampler, self._tangents, self._seams, self._bends, self._bulges
         _fill(SampleFiller(self.mesh, self._coordinates, self.grid, half_size, *of_mesh, arrays), images, report)
@@ -201,7 +197,7 @@ class SamplingRun:
 
     def finished(
         self,
-        arrays: dict[str, np.ndarray],
+        arrays: SampleTable,
         images: tuple[Spans, ...],
         large: Large,
         missed: tuple,
@@ -210,12 +206,12 @@ class SamplingRun:
         """The result after the steps that need neighbouring samples. arrays: of the images' samples. missed: result of
         `missed_components`."""
         total = len(arrays["positions"])
-        arrays = arrays | {TRIANGLES: triangles_of(images)}
+        arrays = check_table(arrays | {"triangle": triangles_of(images)})
         clipping, fitting, merging = self._stages(report)
         if self._chosen.merge is not None:
             arrays = self._chosen.merge(arrays, axes_of(images), self.grid.spacing)
         of_large = {
-            edge: self.filled(large[edge], lambda share: None, edge) | {TRIANGLES: triangles_of(large[edge])}
+            edge: self.filled(large[edge], lambda share: None, edge) | {"triangle": triangles_of(large[edge])}
             for edge in sorted(large)
         }
         cards = {}
@@ -243,17 +239,14 @@ class SamplingRun:
             more.append(of_edge)
             saved += (edge**2 - 1) * len(of_edge["positions"])
         if gaps:
-            more.append(gaps | {TRIANGLES: gap_triangles})
+            more.append(gaps | {"triangle": gap_triangles.astype(np.int32)})
         if small_parts:
             about = self.options.splat_size, self._sampler, self._tangents, bool(self._uv_fields)
             more.append(component_surfels(self.mesh, self._coordinates, self.grid, missed, *about))
         if more:
-            arrays = _joined(arrays, *more)
-        if "lift" in arrays:
-            arrays["lift"] /= np.maximum(*arrays["scales"].T)
-        arrays = {name: array for name, array in arrays.items() if name not in NORMAL_FIELDS or array.any()}
-        triangles = self._kept.take(arrays.pop(TRIANGLES)).astype(np.int32)
-        surfels = Surfels(origin=self.grid.surfel_origin, **arrays)
+            arrays = joined(arrays, *more)
+        triangles = self._kept.take(arrays["triangle"]).astype(np.int32)
+        surfels = Surfels(origin=self.grid.surfel_origin, **_fields(check_table(arrays)))
         keeps_both_sides = self._chosen.merge is None and not small_parts
         report(1.0)
         return Sampling(surfels, small_parts, keeps_both_sides, saved, error, len(gap_triangles), triangles)
@@ -278,7 +271,7 @@ class SamplingRun:
         ends /= ends[-1] or 1.0
         return [stage(report, first, last) for first, last in zip(ends[:-1].tolist(), ends[1:].tolist(), strict=True)]
 
-    def _clipped(self, arrays: dict[str, np.ndarray], images: tuple[Spans, ...], report: Callable[[float], None]):
+    def _clipped(self, arrays: SampleTable, images: tuple[Spans, ...], report: Callable[[float], None]):
         """The samples with their clip lines; and the arrays and triangles of additional surfels on what these
         leave bare.
         """
@@ -299,27 +292,21 @@ class SamplingRun:
             gaps["blend_depth"] = blend_depths(*(of[triangles] for of in bends), gaps["scales"].max(axis=1))
         if self._bulges is not None and gaps:
             places = gaps["positions"] + self.grid.surfel_origin
-            gaps["lift"] = lifts(barycentric(self.mesh, triangles, places).T, self._bulges[:, triangles])
+            rises = lifts(barycentric(self.mesh, triangles, places).T, self._bulges[:, triangles])
+            gaps["rise"] = rises.astype(np.float32)
         if NORMAL_FIELDS[0] in arrays and gaps:
             gaps |= fields_on_triangles(self.mesh, triangles, gaps)
         report(1.0)
         return arrays | fields, gaps, triangles
 
 
-def _joined(*sets: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Sets concatenated by field; a field that one of them lacks is filled with its default."""
-    joined = {}
-    for name in dict.fromkeys(name for one in sets for name in one):
-        parts = []
-        for one in sets:
-            if name in one:
-                parts.append(one[name])
-            else:
-                columns, dtype, value = OPTIONAL_LAYOUT[name]
-                count = len(one["positions"])
-                parts.append(np.full((count, columns) if columns > 1 else count, value, dtype))
-        joined[name] = np.concatenate(parts)
-    return joined
+def _fields(arrays: SampleTable) -> dict[str, np.ndarray]:
+    """The fields of `Surfels`, once all half-axes are final."""
+    fields = {name: array for name, array in arrays.items() if name not in NORMAL_FIELDS or array.any()}
+    del fields["triangle"]
+    if "rise" in fields:
+        fields["lift"] = fields.pop("rise") / np.maximum(*arrays["scales"].T)
+    return fields
 
 
 def _fill(filler: SampleFiller, images: tuple[Spans, ...], report: Callable[[float], None]):

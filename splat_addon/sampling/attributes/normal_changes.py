@@ -9,9 +9,10 @@ from ...normal_fields import NORMAL_FIELDS, changes, fields_of
 from ...quaternions import axes_columns
 from ..materials.texture_mapping import axis_steps
 from ..mesh.triangle_mesh import TriangleMesh
+from ..table import SampleTable
 
 
-def normals_per_cell(arrays: dict[str, np.ndarray], axes: np.ndarray, spacing: float) -> np.ndarray:
+def normals_per_cell(arrays: SampleTable, axes: np.ndarray, spacing: float) -> np.ndarray:
     """(n, 6) float32 change of the normals of samples, as vectors, per column and per row; (n, 0) without any.
 
     arrays: by field of `Surfels`. axes: (n,) the image of each sample."""
@@ -24,9 +25,7 @@ def normals_per_cell(arrays: dict[str, np.ndarray], axes: np.ndarray, spacing: f
     return np.concatenate([(along_x * yr - along_y * xr) / area, (along_y * xc - along_x * yc) / area]).T
 
 
-def from_normals_per_cell(
-    per_cell: np.ndarray, arrays: dict[str, np.ndarray], axes: np.ndarray, spacing: float
-) -> dict[str, np.ndarray]:
+def from_normals_per_cell(per_cell: np.ndarray, arrays: SampleTable, axes: np.ndarray, spacing: float) -> SampleTable:
     """`NORMAL_FIELDS` of the surfels in `arrays`; the inverse of `normals_per_cell`."""
     if not per_cell.shape[1]:
         return {}
@@ -35,7 +34,7 @@ def from_normals_per_cell(
     return fields_of(arrays["normals"].T, along, axes_columns(arrays["rotations"], 0, 1, 2))
 
 
-def fields_on_triangles(mesh: TriangleMesh, triangles: np.ndarray, arrays: dict[str, np.ndarray]) -> dict:
+def fields_on_triangles(mesh: TriangleMesh, triangles: np.ndarray, arrays: SampleTable) -> dict:
     """`NORMAL_FIELDS` of surfels anywhere on these (n,) triangles, as their corner normals change over them.
 
     arrays: by field of `Surfels`."""

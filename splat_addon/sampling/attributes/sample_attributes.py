@@ -17,6 +17,7 @@ from ..ldc.scan_conversion import Spans, expand
 from ..materials.material_sampler import MaterialSampler, Samples
 from ..materials.texture_mapping import BORDER, axis_steps, fill_uvs
 from ..mesh.triangle_mesh import TriangleMesh, corner_indices, corners_at, crossed, doubled_areas
+from ..table import SampleTable
 from .blend_depths import blend_depths
 from .ellipses import MAX_STRETCH, ellipse_rotations, ellipse_scales
 from .lifts import lifts
@@ -45,7 +46,7 @@ class SampleFiller:
     sampler: evaluates the mesh's materials. bends: two (T,) arrays for `blend_depths`, or None. bulges: of `lifts`, or
         None.
     tangents: (T, 3, 4 layers) at its corners, in the layout of `Samples`, or None.
-    arrays: field of `Surfels` -> array to fill.
+    arrays: the table to fill.
     """
 
     def __init__(
@@ -59,7 +60,7 @@ class SampleFiller:
         seams: np.ndarray | None,
         bends: tuple[np.ndarray, np.ndarray] | None,
         bulges: np.ndarray | None,
-        arrays: dict[str, np.ndarray],
+        arrays: SampleTable,
     ):
         self._mesh, self._coordinates, self._grid = mesh, coordinates, grid
         self._half_size, self._sampler, self._tangents, self._arrays = half_size, sampler, tangents, arrays
@@ -103,7 +104,7 @@ class SampleFiller:
                 self._fill_normal_fields(out, vectors, triangles, triangle, weights, steps)
         if self._bulges is not None:
             of_triangles = self._bulges.take(triangles, axis=1).take(triangle, axis=1)
-            out["lift"][...] = lifts(weights.at_samples(line), of_triangles)
+            out["rise"][...] = lifts(weights.at_samples(line), of_triangles)
         samples = self._paint(out, triangles, triangle, weights, line)
         if "uvs" in out:
             steps = axis_steps(out, axis, spacing)

@@ -15,6 +15,7 @@ import numpy as np
 
 from ...clip_lines import CLIP_FIELDS, are_reflex, pack_lines
 from ..ldc.grid import Grid
+from ..table import SampleTable
 from ..workers import in_order
 from .borders import Borders
 from .meetings import BEYOND, Images, Meetings, meetings
@@ -57,7 +58,7 @@ class Clipping:
 
 
 def clippings(
-    arrays: dict[str, np.ndarray],
+    arrays: SampleTable,
     images: Images,
     borders: Borders,
     grid: Grid,
@@ -76,7 +77,7 @@ def clippings(
 
 
 def _clippings(
-    meet: Callable[[], Meetings], arrays: dict[str, np.ndarray], borders: Borders, across: np.ndarray, times: int
+    meet: Callable[[], Meetings], arrays: SampleTable, borders: Borders, across: np.ndarray, times: int
 ) -> list[Clipping]:
     """Run a job of `meetings` and find the lines of its surfels. across: (B,), from `_across`."""
     met = meet()
@@ -107,7 +108,7 @@ def _ended(met: Meetings, scales: np.ndarray, times: int) -> list[Clipping]:
     return [Clipping(met.surfel.take(starts), packed, met, lines.take(owner, axis=2), reflex.take(owner))]
 
 
-def clip_fields(parts: Iterable[Clipping], count: int) -> dict[str, np.ndarray]:
+def clip_fields(parts: Iterable[Clipping], count: int) -> SampleTable:
     """The fields among `CLIP_FIELDS` that any of `count` surfels needs."""
     fields = {name: np.zeros((count, 2), np.int16) for name in CLIP_FIELDS}
     for part in parts:
@@ -116,7 +117,7 @@ def clip_fields(parts: Iterable[Clipping], count: int) -> dict[str, np.ndarray]:
     return {name: values for name, values in fields.items() if values[:, 1].any()}
 
 
-def _one_side_of_each(met: Meetings, arrays: dict[str, np.ndarray], borders: Borders) -> np.ndarray:
+def _one_side_of_each(met: Meetings, arrays: SampleTable, borders: Borders) -> np.ndarray:
     """The meetings, without those for which another side of the same edge fits the surfel better."""
     keys = met.surfel * (int(borders.edges.max()) + 1) + borders.edges.take(met.side)
     order = order_of(keys)
@@ -134,7 +135,7 @@ def _one_side_of_each(met: Meetings, arrays: dict[str, np.ndarray], borders: Bor
     return np.concatenate([alone, shared.take(likest.compress(_groups(group.take(likest))[0]))])
 
 
-def _unlikeness(met: Meetings, rows: np.ndarray, arrays: dict[str, np.ndarray], borders: Borders) -> np.ndarray:
+def _unlikeness(met: Meetings, rows: np.ndarray, arrays: SampleTable, borders: Borders) -> np.ndarray:
     """(r,) difference between the surfel and the face of the side, for these r rows of the meetings."""
     surfel, side = met.surfel.take(rows), met.side.take(rows)
     result = 2 - 2 * met.facing.take(rows) + 0.01 * (met.line[2].take(rows) < 0)

@@ -12,9 +12,10 @@ from itertools import product
 import numpy as np
 
 from ...quaternions import axes_quaternions
-from ...surfels import OPTIONAL_LAYOUT, Surfels, concatenate
+from ...surfels import Surfels, concatenate
 from ..materials.material_sampler import MaterialSampler, Samples
 from ..mesh.triangle_mesh import TriangleMesh, doubled_areas, gather_corners
+from ..table import empty_column
 
 #: Surfels nearer than this share of their spacing to a sample of an edge are too close to it: the paper has no number.
 TOO_CLOSE = 0.5
@@ -103,9 +104,7 @@ def edge_samples(
     sampler = MaterialSampler(far.surfaces)
     materials = np.zeros(len(edge), np.int32) if far.materials is None else far.materials[triangle].astype(np.int32)
     out = {"colors": np.empty((len(edge), 4), np.float32), "normals": shading.astype(np.float32)}
-    for name in sampler.optional:
-        columns, dtype, _ = OPTIONAL_LAYOUT[name]
-        out[name] = np.empty((len(edge), columns) if columns > 1 else len(edge), dtype)
+    out |= {name: empty_column(name, len(edge)) for name in sampler.optional}
     sampler.fill(
         out, _samples(far, triangle, shares, materials, spacing / np.maximum(length[edge], 1e-300), number[edge])
     )

@@ -8,13 +8,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...surfels import LAYOUT, OPTIONAL_LAYOUT
+from ...surfels import LAYOUT
 from ..attributes.ellipses import ellipse_rotations, ellipse_scales
 from ..ldc.grid import Grid
 from ..ldc.scan_conversion import expand
 from ..materials.material_sampler import MaterialSampler, Samples
 from ..mesh.barycentric import barycentric
 from ..mesh.triangle_mesh import TriangleMesh
+from ..table import SampleTable, empty_column
 from .borders import Borders
 from .clipping import Clipping, clip_fields, clippings
 from .meetings import by_facing
@@ -55,7 +56,7 @@ def gap_surfels(
     splat_size: float,
     sampler: MaterialSampler,
     tangents: np.ndarray | None,
-) -> tuple[dict[str, np.ndarray], np.ndarray]:
+) -> tuple[SampleTable, np.ndarray]:
     """The arrays of `Surfels` for bare places beside the borders, clipped like the others ({} if there are none), and
     their (k,) triangles.
 
@@ -178,9 +179,7 @@ def _surfels(mesh, triangles, places, normals, grid: Grid, splat_size, sampler: 
         "colors": np.empty((count, 4), np.float32),
         "materials": materials,
     }
-    for name in sampler.optional:
-        columns, dtype, _ = OPTIONAL_LAYOUT[name]
-        arrays[name] = np.empty((count, columns) if columns > 1 else count, dtype)
+    arrays |= {name: empty_column(name, count) for name in sampler.optional}
     sampler.fill(arrays, _samples(mesh, sampler, tangents, triangles, shares, materials, grid.spacing))
     return {name: arrays[name] for name in (*LAYOUT, *sampler.optional)}
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from ...quaternions import axes_columns, quaternion_axes
 from ..ldc.grid import Grid
+from ..table import SampleTable
 from .borders import Borders
 from .image_neighbours import image_neighbours
 
@@ -65,7 +66,7 @@ class Meetings:
         return replace(self, **given)
 
 
-def by_facing(arrays: dict[str, np.ndarray]) -> Images:
+def by_facing(arrays: SampleTable) -> Images:
     """Each surfel in the image along the axis that it faces most."""
     facing = np.abs(quaternion_axes(arrays["rotations"])[2]).argmax(axis=1)
     return [(axis, np.flatnonzero(facing == axis)) for axis in range(3)]

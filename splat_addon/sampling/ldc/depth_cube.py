@@ -19,8 +19,6 @@ from .scan_conversion import Spans, scan_convert
 #: Surfel rows are indexed with 32 bits elsewhere, which is far beyond practical counts.
 MAX_SAMPLES = 2**31 - 1
 
-#: What the triangles of samples are called beside the fields of `Surfels`.
-TRIANGLES = "triangles"
 
 #: Triangles per batch: larger than elsewhere, because few triangles reach the expensive steps.
 _CHUNK = 24576

@@ -12,9 +12,10 @@ import numpy as np
 
 from ...quaternions import quaternion_axes
 from ..materials.texture_mapping import moved
+from ..table import SampleTable, taken
 
 
-def nearest_to_lattice(arrays: dict[str, np.ndarray], axes: np.ndarray, spacing: float) -> dict[str, np.ndarray]:
+def nearest_to_lattice(arrays: SampleTable, axes: np.ndarray, spacing: float) -> SampleTable:
     """The nearest of the surfels around each lattice node, moved onto the node, in the original order.
 
     arrays: by field of `Surfels`, positions relative to a corner of a cell. axes: of their images, all alike here.
@@ -30,7 +31,7 @@ def nearest_to_lattice(arrays: dict[str, np.ndarray], axes: np.ndarray, spacing:
     is_first = np.ones(len(order), bool)
     is_first[1:] = nodes[1:] != nodes[:-1]
     stay = np.sort(order[is_first])
-    kept = {name: array[stay] for name, array in arrays.items()}
+    kept = taken(arrays, stay)
     positions = np.ascontiguousarray(centres.T[stay], np.float32)
     if "uvs" in kept:
         x, y, _ = quaternion_axes(kept["rotations"], 2)

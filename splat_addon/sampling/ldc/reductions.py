@@ -16,6 +16,7 @@ import numpy as np
 
 from ..mesh.cleaning import drop_unusable
 from ..mesh.triangle_mesh import TriangleMesh, doubled_areas, gather_corners, triangle_chunks
+from ..table import SampleTable, taken
 from .merging import nearest_to_lattice
 
 #: Zwicker's rejection angle, fitted to the published counts.
@@ -51,14 +52,14 @@ def keep_facing(normals: np.ndarray, grazing_angle: float) -> np.ndarray:
     return (normals >= math.cos(grazing_angle) * np.sqrt(x * x + y * y + z * z)) | keep_dominant(normals, grazing_angle)
 
 
-def facing_by_own_normal(arrays: dict[str, np.ndarray], axes: np.ndarray, spacing: float) -> dict[str, np.ndarray]:
+def facing_by_own_normal(arrays: SampleTable, axes: np.ndarray, spacing: float) -> SampleTable:
     """The samples whose own normal faces their image most; ties go to the lowest axis.
 
     View-independent object-space splatting, section 4.1, to the letter: a sample knows its interpolated normal, not
     its triangle. Where normals turn within a cell, neighbours choose different axes, and both or neither stay.
     """
     stay = keep_dominant(np.abs(arrays["normals"].T), 0.0)[axes, np.arange(len(axes))]
-    return {name: array[stay] for name, array in arrays.items()}
+    return taken(arrays, stay)
 
 
 @dataclass(frozen=True)
@@ -76,7 +77,7 @@ class Reduction:
     description: str
     keeps: Callable[[np.ndarray, float], np.ndarray]
     counts: Callable[[np.ndarray, float], np.ndarray]
-    merge: Callable[[dict[str, np.ndarray], np.ndarray, float], dict[str, np.ndarray]] | None = None
+    merge: Callable[[SampleTable, np.ndarray, float], SampleTable] | None = None
     moves: bool = False
     has_angle: bool = False
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from ...shading_nodes import Inputs, evaluate
 from ...surfels import OPTIONAL_LAYOUT
+from ..table import SampleTable
 from .surfaces import WRAPS, Channel, Computed, NormalMap, Surface, Texture, VertexColors
 
 #: The pixel of a normal map that leaves the normal unchanged.
@@ -63,7 +64,7 @@ class MaterialSampler:
         self.needs_tangents = any(s.normal_map is not None and s.normal_map.space == "TANGENT" for s in surfaces)
         self.needs_uvs = bool(textures) or self.needs_tangents or any(graph.reads_uvs for graph in graphs)
 
-    def fill(self, out: dict[str, np.ndarray], samples: Samples) -> None:
+    def fill(self, out: SampleTable, samples: Samples) -> None:
         """Write colours and optional fields, and apply normal maps to the shading normals already in `out`.
 
         out: fields of `Surfels` -> their rows of these samples. Non-finite values are replaced by the channel's

@@ -11,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...quaternions import quaternion_axes
+from ..table import SampleTable
 from .material_sampler import Samples, placed
 from .surfaces import Surface
 
@@ -25,7 +26,7 @@ def is_texture_mapped(surfaces: tuple[Surface, ...]) -> bool:
     return any(surface.color_texture is not None for surface in surfaces)
 
 
-def fill_uvs(out: dict[str, np.ndarray], surfaces: tuple[Surface, ...], samples: Samples, steps: np.ndarray) -> None:
+def fill_uvs(out: SampleTable, surfaces: tuple[Surface, ...], samples: Samples, steps: np.ndarray) -> None:
     """Write `UV_FIELDS`. Zeros, which mean that the surfel's own colour is shown, are written if the surface's colour
     is not a single image, the mesh lacks its layer, or the coordinates are not finite.
 
@@ -50,7 +51,7 @@ def fill_uvs(out: dict[str, np.ndarray], surfaces: tuple[Surface, ...], samples:
             out[name][at[good]] = values.T
 
 
-def axis_steps(arrays: dict[str, np.ndarray], axes: np.ndarray | int, spacing: float) -> np.ndarray:
+def axis_steps(arrays: SampleTable, axes: np.ndarray | int, spacing: float) -> np.ndarray:
     """(2, 2, n): the local x and y half-axis (axis 0) of surfels, in columns and rows (axis 1) of an image.
 
     axes: (n,) the axis along which each was sampled, or one for all.
@@ -63,7 +64,7 @@ def axis_steps(arrays: dict[str, np.ndarray], axes: np.ndarray | int, spacing: f
     )
 
 
-def uv_planes(arrays: dict[str, np.ndarray], axes: np.ndarray, spacing: float) -> np.ndarray:
+def uv_planes(arrays: SampleTable, axes: np.ndarray, spacing: float) -> np.ndarray:
     """(n, 2, 3) float64 coordinates at the centres and their change per column and per row; (n, 0, 3) without
     coordinates."""
     if "uvs" not in arrays:
@@ -76,7 +77,7 @@ def uv_planes(arrays: dict[str, np.ndarray], axes: np.ndarray, spacing: float) -
     return np.stack([arrays["uvs"], per_column, per_row], axis=2)
 
 
-def from_uv_planes(planes: np.ndarray, arrays: dict[str, np.ndarray], axes: np.ndarray, spacing: float) -> dict:
+def from_uv_planes(planes: np.ndarray, arrays: SampleTable, axes: np.ndarray, spacing: float) -> dict:
     """`UV_FIELDS` of the surfels in `arrays`; the inverse of `uv_planes`."""
     steps = axis_steps(arrays, axes, spacing)
     along = (planes[:, :, 1] * c[:, None] + planes[:, :, 2] * r[:, None] for c, r in steps)
@@ -102,7 +103,7 @@ def is_mapped(planes: np.ndarray) -> np.ndarray:
     return (planes[:, :, 1:] != 0).any(axis=(1, 2))
 
 
-def moved(arrays: dict[str, np.ndarray], half_axes: tuple[np.ndarray, np.ndarray], offset: np.ndarray) -> dict:
+def moved(arrays: SampleTable, half_axes: tuple[np.ndarray, np.ndarray], offset: np.ndarray) -> dict:
     """Changes to the fields of surfels whose centres move by (n, 3) `offset` within their planes."""
     x, y = (np.einsum("ij,ij->i", offset, a) / np.einsum("ij,ij->i", a, a) for a in half_axes)
     line = arrays[BORDER]

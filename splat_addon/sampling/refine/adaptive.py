@@ -22,9 +22,9 @@ from ...surfels import LAYOUT
 from ..attributes.blend_depths import LEAST_BLENDING
 from ..attributes.ellipses import ellipse_rotations, ellipse_scales
 from ..attributes.normal_changes import from_normals_per_cell, normals_per_cell
-from ..ldc.depth_cube import TRIANGLES
 from ..ldc.grid import BLOCK
 from ..materials.texture_mapping import BORDER, UV_FIELDS, from_uv_planes, is_mapped, slips, uv_planes
+from ..table import SampleTable, taken
 
 #: Maximum doublings of the spacing. The renderer separates surfaces that are half a splat's radius apart, so larger
 #: discs would blend with surfaces several spacings behind them.
@@ -43,12 +43,6 @@ _SPREAD = 2 * math.sqrt(3)
 
 #: Rounding error of texture coordinates in float32, in cells.
 _ROUNDING = 1e-3
-
-#: What is averaged beside the fields: the changes of normals.
-_CHANGES = "changes per cell"
-
-#: Factor of these where values are compared: they do not decide what merges.
-_SCALED, _NOT_COMPARED = {"lift", _CHANGES}, np.float32(2.0**-60)
 
 #: Maximum number of surface layers over one block that a search considers.
 _LAYERS = 4
@@ -80,17 +74,18 @@ class _Nodes:
     """n blocks of one level, sorted by key, each fully covered by one layer of surface.
 
     keys: (n,) int64: image, side and block. planes: (n, 3): depth over the block's middle and its change per column and
-        row, in cells. shading: (n, 3) unit. colors: (n, 4 or more): averaged values, colour first, then optional fields
-        of `Surfels`. materials, triangles: (n,), of the first sample. errors, bends, tints: (n,) bounds on how much
-        samples differ from the block: depth in cells, radians, colour. uvs: (n, 2, 3) texture coordinates over the
-        block's middle and their change per column and row, (n, 0, 3) without any; slips: (n,) bound on their error, in
-        cells. children: (n, 4) rows of the level below.
+        row, in cells. shading: (n, 3) unit. colors: (n, 4 or more): averaged values, colour first, then others.
+    carried: (n, c), what is averaged and does not decide what merges. materials, triangles: (n,), of the first sample.
+    errors, bends, tints: (n,) bounds on how much samples differ from the block: depth in cells, radians, colour.
+    uvs: (n, 2, 3) texture coordinates over the block's middle and their change per column and row, (n, 0, 3) without
+        any. slips: (n,) bound on their error, in cells. children: (n, 4) rows of the level below.
     """
 
     keys: np.ndarray
     planes: np.ndarray
     shading: np.ndarray
     colors: np.ndarray
+    carried: np.ndarray
     materials: np.ndarray
     triangles: np.ndarray
     errors: np.ndarray
@@ -105,12 +100,12 @@ class _Nodes:
 
 
 def merge_flat(
-    arrays: dict[str, np.ndarray],
+    arrays: SampleTable,
     axes: np.ndarray,
     spacing: float,
     tolerance: Tolerance,
     report: Callable[[float], None] = lambda share: None,
-) -> tuple[dict[str, np.ndarray], float]:
+) -> tuple[SampleTable, float]:
     """Merge flat regions. Returns the surfels, those that were not merged first, and the largest error in object units.
 
     arrays: by field of `Surfels`, positions relative to a corner of a cell. axes: (N,) the image of each sample.
@@ -122,7 +117,7 @@ def merge_flat(
         report(0.5 * (1 - len(levels[-1].keys) / len(base.keys)))
         levels.append(_parents(levels[-1], 2 ** (len(levels) - 1), spacing, tolerance))
     parts, error = [], 0.0
-    optional = _averaged(arrays, axes, spacing)
+    optional, rises = _optional(arrays), _rises(arrays)
     has_uvs = "uvs" in arrays
     wanted = np.arange(len(levels[-1].keys))
     for level in range(len(levels) - 1, 0, -1):
@@ -132,8 +127,9 @@ def merge_flat(
         discs = nodes.take(np.flatnonzero(alone))
         made, images = _discs(discs, level, spacing), _block(discs.keys)[0] >> 1
         uvs = from_uv_planes(discs.uvs, made, images, spacing) if has_uvs else {}
-        averaged = _unstacked(discs.colors[:, 4:], optional)
-        changes = from_normals_per_cell(averaged.pop(_CHANGES), made, images, spacing)
+        averaged = _unstacked(discs.colors[:, 4:], optional) | _unstacked(discs.carried, rises)
+        per_cell = discs.carried[:, len(rises) :].astype(np.float32)
+        changes = from_normals_per_cell(per_cell, made, images, spacing)
         parts.append(made | uvs | averaged | changes | _edge_fields(arrays, made, tolerance))
         error = max(error, float((nodes.errors * _cosines(nodes.planes))[alone].max(initial=0.0)))
         free = np.ones(len(levels[level - 1].keys), bool)
@@ -141,7 +137,7 @@ def merge_flat(
         free[nodes.children[~alone].ravel()] = True
         wanted = np.flatnonzero(free)
     rest = np.sort(order[wanted])
-    parts.append({name: array[rest] for name, array in arrays.items()})
+    parts.append(taken(arrays, rest))
     return {name: np.concatenate([part[name] for part in parts[::-1]]) for name in arrays}, error * spacing
 
 
@@ -160,23 +156,26 @@ def _samples(arrays, axes, spacing) -> tuple[_Nodes, np.ndarray]:
         if name in arrays:
             # Samples with clip lines are treated as unlike all others.
             tints[arrays[name][:, 1] > 0] = np.inf
-    colors = np.column_stack([arrays["colors"], *_averaged(arrays, axes, spacing).values()])
+    colors = np.column_stack([arrays["colors"], *_optional(arrays).values()])
+    carried = np.column_stack([*_rises(arrays).values(), normals_per_cell(arrays, axes, spacing)])
     uvs = uv_planes(arrays, axes, spacing)
-    alike = keys, planes, arrays["normals"], colors, arrays["materials"], arrays[TRIANGLES]
+    alike = keys, planes, arrays["normals"], colors, carried, arrays["materials"], arrays["triangle"]
     nodes = _Nodes(*alike, zeros, zeros, tints, uvs, zeros, zeros[:, None])
     return nodes.take(order), order
 
 
-def _averaged(arrays: dict[str, np.ndarray], axes: np.ndarray, spacing: float) -> dict[str, np.ndarray]:
-    """What merged discs average: optional fields, and changes of normals per cell. Lifts and changes are alike, because
-    normals are compared."""
-    others = (*LAYOUT, *UV_FIELDS, BORDER, *CLIP_FIELDS, *NORMAL_FIELDS, "blend_depth", TRIANGLES)
-    averaged = {name: array for name, array in arrays.items() if name not in others}
-    averaged[_CHANGES] = normals_per_cell(arrays, axes, spacing)
-    return averaged | {name: averaged[name] * _NOT_COMPARED for name in _SCALED & averaged.keys()}
+def _optional(arrays: SampleTable) -> SampleTable:
+    """The optional columns that are averaged where they are alike."""
+    others = (*LAYOUT, *UV_FIELDS, BORDER, *CLIP_FIELDS, *NORMAL_FIELDS, "blend_depth", "rise", "triangle")
+    return {name: array for name, array in arrays.items() if name not in others}
 
 
-def _edge_fields(arrays, made, tolerance: Tolerance) -> dict[str, np.ndarray]:
+def _rises(arrays: SampleTable) -> SampleTable:
+    """What is averaged beside the changes of normals per cell. Both are alike, because normals are compared."""
+    return {"rise": arrays["rise"]} if "rise" in arrays else {}
+
+
+def _edge_fields(arrays, made, tolerance: Tolerance) -> SampleTable:
     """Clip lines and blend depths of merged discs, if `arrays` has such: the surface continues around them and stays
     within the tolerance of their planes, and so do their neighbours."""
     count = len(made["scales"])
@@ -227,6 +226,7 @@ def _parents(nodes: _Nodes, edge: int, spacing: float, tolerance: Tolerance) -> 
         planes,
         shading,
         colors,
+        nodes.carried[four].mean(axis=1),
         nodes.materials[four[:, 0]],
         nodes.triangles[four[:, 0]],
         (_plane_distances(planes, nodes.planes[four], edge) + nodes.errors[four]).max(axis=1),
@@ -331,18 +331,18 @@ def _are_alike(a: _Nodes, i: np.ndarray, b: _Nodes, k: np.ndarray, tolerance: To
     return alike
 
 
-def _unstacked(columns: np.ndarray, like: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+def _unstacked(columns: np.ndarray, like: SampleTable) -> SampleTable:
     """Split (n, k) columns into arrays with the names, widths and types of `like`, in its order."""
     made, start = {}, 0
     for name, array in like.items():
         width = math.prod(array.shape[1:])
-        values = columns[:, start : start + width] / (_NOT_COMPARED if name in _SCALED else 1)
+        values = columns[:, start : start + width]
         made[name] = values.reshape(len(columns), *array.shape[1:]).astype(array.dtype)
         start += width
     return made
 
 
-def _discs(nodes: _Nodes, level: int, spacing: float) -> dict[str, np.ndarray]:
+def _discs(nodes: _Nodes, level: int, spacing: float) -> SampleTable:
     """The arrays of `Surfels` for merged blocks."""
     count, edge = len(nodes.keys), 2**level
     side, column, row = _block(nodes.keys)
@@ -358,7 +358,7 @@ def _discs(nodes: _Nodes, level: int, spacing: float) -> dict[str, np.ndarray]:
         "normals": nodes.shading.astype(np.float32),
         "colors": nodes.colors[:, :4].astype(np.float32),
         "materials": nodes.materials.astype(np.int32),
-        TRIANGLES: nodes.triangles,
+        "triangle": nodes.triangles,
     }
     for axis in range(3):
         at = np.flatnonzero(side >> 1 == axis)

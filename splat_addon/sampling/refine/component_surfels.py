@@ -8,13 +8,12 @@ import math
 import numpy as np
 
 from ...quaternions import quaternion_axes
-from ...surfels import OPTIONAL_LAYOUT
 from ..attributes.ellipses import ellipse_rotations
-from ..ldc.depth_cube import TRIANGLES
 from ..ldc.grid import Grid
 from ..materials.material_sampler import MaterialSampler, Samples
 from ..materials.texture_mapping import BORDER, UV_FIELDS, fill_uvs
 from ..mesh.triangle_mesh import TriangleMesh, doubled_areas, gather_corners
+from ..table import SampleTable, empty_column
 
 #: Half-axis of the smallest disc, in spacings: specks without measurable area still get a surfel.
 _LEAST_RADIUS = 1e-3
@@ -32,7 +31,7 @@ def component_surfels(
     sampler: MaterialSampler,
     tangents: np.ndarray | None,
     texture_mapped: bool,
-) -> dict[str, np.ndarray]:
+) -> SampleTable:
     """The arrays of `Surfels` of p parts, positions relative to the grid's middle, and their largest triangles.
 
     coordinates: (3, V) float64 grid coordinates of the mesh's vertices. missed: result of `missed_components`.
@@ -57,7 +56,7 @@ def component_surfels(
     largest = np.lexsort((areas, part))[np.cumsum(np.bincount(part)) - 1]
     materials = np.zeros(len(total), np.int32) if mesh.materials is None else mesh.materials[triangles[largest]]
     count = len(total)
-    arrays = {
+    arrays: SampleTable = {
         "positions": ((centroids.T + 0.5 - grid.middle) * grid.spacing).astype(np.float32),
         "rotations": ellipse_rotations(normals, 2),
         "scales": np.stack([radius, radius], axis=1).astype(np.float32),
@@ -65,18 +64,16 @@ def component_surfels(
         "colors": np.empty((count, 4), np.float32),
         "materials": materials.astype(np.int32),
     }
-    for name in sampler.optional:
-        columns, dtype, _ = OPTIONAL_LAYOUT[name]
-        arrays[name] = np.empty((count, columns) if columns > 1 else count, dtype)
+    arrays |= {name: empty_column(name, count) for name in sampler.optional}
     samples = _samples(mesh, sampler, tangents, triangles[largest], materials)
     sampler.fill(arrays, samples)
     if texture_mapped:
         arrays |= {name: np.zeros((count, 2), np.float32) for name in (*UV_FIELDS, BORDER)}
         fill_uvs(arrays, mesh.surfaces, samples, axis_steps_of(corners[:, :, largest] * grid.spacing, arrays))
-    return arrays | {TRIANGLES: triangles[largest]}
+    return arrays | {"triangle": triangles[largest].astype(np.int32)}
 
 
-def axis_steps_of(corners: np.ndarray, arrays: dict[str, np.ndarray]) -> np.ndarray:
+def axis_steps_of(corners: np.ndarray, arrays: SampleTable) -> np.ndarray:
     """(2, 2, p): the discs' half-axes in units of the two edges from a triangle's first corner, in its plane.
 
     corners: (3, 3, p), object units. Uses the dual basis of the edges; not finite for a triangle without area.

@@ -19,6 +19,7 @@ from ...quaternions import axes_columns
 from ..attributes.blend_depths import LEAST_BLENDING
 from ..ldc.grid import Grid
 from ..mesh.triangle_mesh import triangle_chunks
+from ..table import SampleTable
 from ..workers import in_order
 from .image_samples import SAME_SIDE, ImageSamples
 
@@ -47,13 +48,13 @@ _KEPT = 0.5
 
 
 def fit_planes(
-    arrays: dict[str, np.ndarray],
+    arrays: SampleTable,
     images: list[tuple[int, slice]],
     inside: np.ndarray,
     grid: Grid,
     is_closed: bool,
     report: Callable[[float], None] = lambda share: None,
-) -> dict[str, np.ndarray]:
+) -> SampleTable:
     """The fields of `Surfels` that change: positions, rotations and clip lines.
 
     arrays: samples with blend depths, which tell where the surface bends; positions relative to the grid's middle.
@@ -119,7 +120,7 @@ def _seen(arrays, images, bent: np.ndarray, spacing: float, report: Callable[[fl
     return seen
 
 
-def _places_and_normals(arrays: dict[str, np.ndarray], rows: np.ndarray, spacing: float):
+def _places_and_normals(arrays: SampleTable, rows: np.ndarray, spacing: float):
     """(3, n) float32 places in cells from the grid's middle, and (3, n) unit normals of planes."""
     places, normals = np.empty((2, 3, len(rows)), np.float32)
     for part in triangle_chunks(len(rows)):
@@ -134,7 +135,7 @@ class _Lines:
     these, or -1. covectors: (2, 4, c), above 0 at offsets in cells, and 1, on the kept side. reflex: (c,) whether one
     line's side is enough."""
 
-    def __init__(self, arrays: dict[str, np.ndarray], rows: np.ndarray, at: np.ndarray, sizes: np.ndarray):
+    def __init__(self, arrays: SampleTable, rows: np.ndarray, at: np.ndarray, sizes: np.ndarray):
         """sizes: (c, 2) half-axes, in cells."""
         self.at, cut = at, rows.take(at)
         self.clipped = np.full(len(rows), -1, np.intp)
@@ -268,7 +269,7 @@ def _move(changed, rows: np.ndarray, normals: list[np.ndarray], offset: np.ndarr
     changed["rotations"][rows] = rotations
 
 
-def _cut_less(changed: dict[str, np.ndarray], rows: np.ndarray, less: np.ndarray):
+def _cut_less(changed: SampleTable, rows: np.ndarray, less: np.ndarray):
     """Let the lines of (n,) cut surfels cut less, by (n,) half-axes; none goes."""
     for name in CLIP_FIELDS:
         if name in changed:

@@ -21,6 +21,7 @@ from ..ldc.scan_conversion import Spans, batches, expand
 from ..mesh.connectivity import triangle_parts, twins
 from ..mesh.survey import boundary_weights
 from ..mesh.triangle_mesh import TriangleMesh, corner_indices, doubled_areas, gather_corners
+from ..table import SampleTable
 
 #: Sheets are a card's sides if they are less than this far behind one another, in cells, and the cosine between their
 #: normals is below this, as at the edge of a thick card: there, too, the view from behind is blocked by the other side.
@@ -38,7 +39,7 @@ _BATCH = 1 << 20
 
 def cards_of(
     images: dict[int, tuple[Spans, ...]],
-    arrays: dict[int, dict[str, np.ndarray]],
+    arrays: dict[int, SampleTable],
     mesh: TriangleMesh,
     spacing: float,
     deforms: bool = False,
@@ -82,7 +83,7 @@ class _Runs(NamedTuple):
         return _Runs(*(values[some] for values in self))
 
 
-def _runs_of(spans: Spans, axis: int, edge: int, arrays: dict[str, np.ndarray], first: int, spacing: float) -> _Runs:
+def _runs_of(spans: Spans, axis: int, edge: int, arrays: SampleTable, first: int, spacing: float) -> _Runs:
     """The samples of an image; of blocks with this edge, all cells, each with the number of its block.
 
     arrays: field of `Surfels` -> values at the spans' samples. first: number of the first sample.
