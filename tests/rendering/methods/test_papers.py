@@ -9,11 +9,12 @@ import pytest
 from splat_addon.quaternions import axes_quaternions
 from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.extremes import discs, sheet
+from splat_addon.reference.methods import TWINS
 from splat_addon.reference.methods.homogeneous_printed import window_map
 from splat_addon.reference.methods.plane import splat_plane
 from splat_addon.reference.methods.sprites import window_depth
 from splat_addon.reference.metrics import psnr
-from splat_addon.rendering import Camera, Renderer, Scene, Settings, plan
+from splat_addon.rendering import Camera, Light, Renderer, Scene, Settings, plan
 from splat_addon.rendering.plan.programs import describe
 
 SIZE = (128, 128)
@@ -208,6 +209,80 @@ def test_as_printed_the_map_to_the_splat_is_set_up_once_a_splat():
     sample = texts.fragment.split("vec2 splat_sample(")[1].split("\n}")[0]
     assert "uvw = to_splat_x * pixel.x + (to_splat_y * pixel.y + to_splat_origin);" in sample
     assert "cross" not in sample and "inverse" not in sample
+
+
+def test_the_map_to_the_splat_and_the_one_relative_to_its_centre_are_alike_in_float32():
+    """Guennebaud et al. 2006, equations 3 to 5, beside the same map written relative to the centre: places that differ
+    by less than 1e-7 of the depth, which is the inputs' rounding. Errors in radii grow as splats get smaller, in both."""
+    random, single = np.random.default_rng(0), np.float32
+    for radius in (1e-2, 1e-4):
+        errors = []
+        for _ in range(200):
+            p, normal = np.array((*random.uniform(-0.4, 0.4, 2), 1.0)), unit(random.normal(size=3))
+            s = radius * unit(np.cross(normal, random.normal(size=3)))
+            t, uv = np.cross(normal, s), random.uniform(-0.7, 0.7, 2)
+            if abs(normal @ p) > 0.3:
+                q = p + uv[0] * s + uv[1] * t
+                x = (q[:2] / q[2]).astype(single)
+                true = by_adjoint(p, s, t, x.astype(np.float64))
+                shapes = [a.astype(single) for a in (p, s, t)]
+                errors.append([abs(form(*shapes, x) - true).max() for form in (by_adjoint, about_centre)])
+        printed, relative = np.median(errors, axis=0) * radius
+        assert relative < printed < 4 * relative < 1e-7
+
+
+def unit(vector):
+    return vector / np.linalg.norm(vector)
+
+
+def by_adjoint(p, s, t, x):
+    """Equations 4 and 5."""
+    u, v, w = np.stack([np.cross(t, p), np.cross(p, s), np.cross(s, t)]) @ np.append(x, x.dtype.type(1))
+    return np.array((u / w, v / w))
+
+
+def about_centre(p, s, t, x):
+    """The same with what half-axes move the centre's image by, and change its depth by."""
+    middle, (g, h) = p[:2] / p[2], (s[2] / p[2], t[2] / p[2])
+    a, b, d = (s[:2] - middle * s[2]) / p[2], (t[:2] - middle * t[2]) / p[2], x - middle
+    det = a[0] * b[1] - a[1] * b[0] - d[0] * (g * b[1] - h * a[1]) - d[1] * (h * a[0] - g * b[0])
+    return np.array((d[0] * b[1] - d[1] * b[0], a[0] * d[1] - a[1] * d[0])) / det
+
+
+def test_where_a_splat_is_minified_and_magnified_the_tangents_filter_is_closer_to_ewa_than_the_union():
+    """Guennebaud et al. 2006, section 4.2. A disc of 3 pixels is seen so flat that it is 0.3 pixels high; what is
+    compared are weights over their largest, in a square of 16 pixels."""
+    cosine, pixel = 0.1, 0.01
+    up = np.array((0, cosine, -np.sqrt(1 - cosine**2)))
+    plane = splat_plane((0, 0, -1), (3 * pixel, 0, 0), 3 * pixel * up)
+    axis = (np.arange(-64, 64) + 0.5) / 8 * pixel
+    points = np.stack([a.ravel() for a in np.meshgrid(axis, axis)], axis=1)
+
+    def shape(method, **how):
+        weights, _ = TWINS[method](plane, points, np.full(2, pixel), **how)
+        return weights / weights.max()
+
+    tangents, union = shape("homogeneous_printed"), shape("raycast_printed")
+    for variance in (1.0, 0.5):
+        ewa = shape("ewa", variance=variance)
+        off = [np.linalg.norm(other - ewa) / np.linalg.norm(ewa) for other in (tangents, union)]
+        assert off[0] < 0.4 < 0.5 < off[1]
+
+
+def test_the_three_passes_of_2005_are_these():
+    """Botsch et al. 2005, section 4.1: the visibility pass fills the z-buffer, the attribute pass sums colours and
+    normals in render targets of floats, and the shading pass alone has the lights. Between them a pass over the picture
+    makes bounds of the depths."""
+    scene, camera = POSES["torus"]
+    lit = replace(scene, lights=(Light("sun", energy=1.0),))
+    passes = plan(lit, camera, Settings(method="raycast_printed", shading="phong", outputs=("color",))).passes
+    assert [p.name for p in passes] == ["visibility", "depth_bounds", "attributes", "shading"]
+    written, read, inputs = (
+        [{getattr(t, "name", t) for part in p.parts for t in getattr(part, of)} for p in passes]
+        for of in ("writes", "reads", "inputs")
+    )
+    assert written[0] == {"visibility_depth"} and {"gbuffer_color", "gbuffer_normal"} <= written[2] <= read[3]
+    assert ["lights" in names for names in inputs] == [False, False, False, True]
 
 
 def test_one_pass_is_one_pass():
