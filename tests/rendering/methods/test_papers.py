@@ -212,8 +212,8 @@ def test_as_printed_the_map_to_the_splat_is_set_up_once_a_splat():
 
 
 def test_the_map_to_the_splat_and_the_one_relative_to_its_centre_are_alike_in_float32():
-    """Guennebaud et al. 2006, equations 3 to 5, beside the same map written relative to the centre: places that differ
-    by less than 1e-7 of the depth, which is the inputs' rounding. Errors in radii grow as splats get smaller, in both."""
+    """Places by equations 3 to 5 of Guennebaud et al. 2006, and by the same map written relative to the centre, are
+    right to 1e-7 of the depth, which is the inputs' rounding. Errors in radii grow as splats get smaller, in both."""
     random, single = np.random.default_rng(0), np.float32
     for radius in (1e-2, 1e-4):
         errors = []
@@ -250,8 +250,8 @@ def about_centre(p, s, t, x):
 
 
 def test_where_a_splat_is_minified_and_magnified_the_tangents_filter_is_closer_to_ewa_than_the_union():
-    """Guennebaud et al. 2006, section 4.2. A disc of 3 pixels is seen so flat that it is 0.3 pixels high; what is
-    compared are weights over their largest, in a square of 16 pixels."""
+    """A disc of 3 pixels is seen so flat that it is 0.3 pixels high; what is compared are weights over their largest,
+    in a square of 16 pixels (Guennebaud et al. 2006, section 4.2)."""
     cosine, pixel = 0.1, 0.01
     up = np.array((0, cosine, -np.sqrt(1 - cosine**2)))
     plane = splat_plane((0, 0, -1), (3 * pixel, 0, 0), 3 * pixel * up)
