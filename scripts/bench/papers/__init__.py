@@ -30,7 +30,10 @@ from splat_addon.sampling.options import DEFAULT_SPLAT_SIZE
 DEVICES = ("standalone",)
 QUICK = {"resolutions": [64], "size": 64}
 MODELS = ("armadillo.obj.gz", "bunny.obj.gz")
-ONE = Settings(supersampling=1, shading="phong", shadow_resolution=0, outputs=("color", "depth"), detail_tolerance=0.0)
+ONE = Settings(
+    supersampling=1, shading="phong", shadow_resolution=0, outputs=("color", "depth"), detail_tolerance=0.0,
+    as_printed=True,
+)  # fmt: skip
 QUADS = replace(ONE, method="quad")
 #: The paper's low-pass filter.
 MULTISAMPLED = replace(QUADS, multisampling=4)
@@ -232,7 +235,7 @@ def _sums(renderer: Renderer, case, options):
         whole = renderer.render(*_scene(options.models / name, resolution, options.size), covered).coverage > 0
         inside = ndimage.binary_erosion(whole, iterations=8)
         for method in SUMMED:
-            renderer.render(*shot, replace(ONE, method=method, shading="flat", as_printed=True))
+            renderer.render(*shot, replace(ONE, method=method, shading="flat"))
             sums = _weights(renderer, options.size)[inside]
             measured = f"{sums.mean():.2f}", f"{sums.std() / sums.mean():.3f}", f"{100 * (sums == 0).mean():.1f} %"
             yield f"{short(name)} at {resolution}", f"{size:g} H", method, *measured
