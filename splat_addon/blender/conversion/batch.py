@@ -17,6 +17,7 @@ import numpy as np
 from ...doubts import doubts
 from ...faults import sentence_of
 from ...sampling import Sampling, SamplingCancelled, sample_surface
+from ..spoken import said
 from .as_rendered import as_rendered
 from .following import at_origin_of_source, with_short_origin
 from .gathering import groups
@@ -44,6 +45,10 @@ class Batch(ABC):
     @property
     def share(self) -> float:
         return (max(self._begun - 1, 0) + self._part) / len(self._groups)
+
+    def status(self) -> str:
+        """What the status bar shows."""
+        return said("Converting to surfels: {percent:.0f}%   Esc cancels", percent=100 * self.share)
 
     @property
     def has_sources(self) -> bool:

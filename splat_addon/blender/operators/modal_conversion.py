@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shared by the converting operators: from a button or a menu, sampling runs in a thread, so that the window shows
-progress and Esc cancels; from a script, in background mode or from the redo panel, `execute` runs it to the end."""
+"""Shared by the converting operators: from a button or a menu, sampling runs in a thread; from a script, in background
+mode or from the redo panel, `execute` runs it to the end."""
 
 from __future__ import annotations
-
-from concurrent.futures import ThreadPoolExecutor
 
 import bpy
 
@@ -14,8 +12,7 @@ from ..conversion.source_record import sources_of
 from ..conversion.ties import tie
 from ..ids import ENGINE, ENGINE_LABEL
 from ..spoken import said
-
-_TIMER_SECONDS = 0.05
+from .modal_thread import ModalThread
 
 
 def was_converted(context: bpy.types.Context) -> bool:
@@ -24,7 +21,7 @@ def was_converted(context: bpy.types.Context) -> bool:
     return any(sources_of(made) for made in context.selected_objects if made.type == "MESH")
 
 
-class ModalConversion:
+class ModalConversion(ModalThread):
     """A mix-in for operators that have the properties `source` ("KEEP" or "HIDE") and `follow`."""
 
     follow: follow_property()
@@ -35,7 +32,6 @@ class ModalConversion:
 
     #: The kind under which the record stores the conversion.
     kind = ""
-    _timer = None
 
     def execute(self, context):
         batch = self._new_batch(context)
@@ -60,55 +56,21 @@ class ModalConversion:
     def invoke(self, context, event):
         if bpy.app.background:
             return self.execute(context)
-        self._batch = self._new_batch(context)
-        if not self._batch.has_sources:
+        batch = self._new_batch(context)
+        if not batch.has_sources:
             self._report_already()
             return {"CANCELLED"}
-        self._prepared = self._batch.prepared(context)
-        self._executor, self._sampling = ThreadPoolExecutor(max_workers=1), None
-        self._timer = context.window_manager.event_timer_add(_TIMER_SECONDS, window=context.window)
-        context.window_manager.progress_begin(0.0, 1.0)
-        context.window_manager.modal_handler_add(self)
-        return {"RUNNING_MODAL"}
+        self._prepared = batch.prepared(context)
+        return self._begin_thread(context, batch)
 
-    def modal(self, context, event):
-        if event.type == "ESC":
-            self._batch.is_cancelled = True
-        if event.type == "TIMER":
-            self._show_progress(context)
-            if self._sampling is None or self._sampling.done():
-                return self._next_source(context)
-        return {"RUNNING_MODAL"}
-
-    def cancel(self, context):
-        """Blender calls this when it closes or loads another file."""
-        self._batch.is_cancelled = True
-        self._end_modal(context)
-
-    def _next_source(self, context):
-        if self._sampling is not None:
-            self._sampling.result()
-        conversion = None if self._batch.is_cancelled else next(self._prepared, None)
+    def _advance(self, context):
+        if self._job is not None:
+            self._job.result()
+        conversion = None if self._work.is_cancelled else next(self._prepared, None)
         if conversion is None:
-            self._end_modal(context)
-            return self._finish(context, self._batch)
-        self._sampling = self._executor.submit(self._batch.sample, conversion)
-        return {"RUNNING_MODAL"}
-
-    def _show_progress(self, context):
-        context.window_manager.progress_update(self._batch.share)
-        percent = 100 * self._batch.share
-        context.workspace.status_text_set(said("Converting to surfels: {percent:.0f}%   Esc cancels", percent=percent))
-
-    def _end_modal(self, context):
-        """End what `invoke` began, once."""
-        timer, self._timer = self._timer, None
-        if timer is None:
-            return
-        self._executor.shutdown()
-        context.window_manager.event_timer_remove(timer)
-        context.window_manager.progress_end()
-        context.workspace.status_text_set(None)
+            self._end_thread(context)
+            return self._finish(context, self._work)
+        return self._submit(self._work.sample, conversion)
 
     def _finish(self, context, batch):
         if batch.is_cancelled:

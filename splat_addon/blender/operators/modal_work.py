@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shared by the operators that read and write large files: from a button, a dialog or the file browser, a thread works,
-so that the window shows progress and Esc cancels; from a script or in background mode, `execute` does."""
+"""Shared by the operators that read and write large files: from a button, a dialog or the file browser, a thread works;
+from a script or in background mode, `execute` does."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from concurrent.futures import ThreadPoolExecutor
 from typing import Protocol
 
 import bpy
@@ -16,24 +15,17 @@ from ...streaming import WritingCancelled, own_file, write_blocks
 from ...surfels import Surfels
 from ..spoken import said
 from .file_paths import file_sentence
-
-_TIMER_SECONDS = 0.1
+from .modal_thread import ModalThread, Work
 
 #: What ends work that was cancelled.
 _CANCELLED = (ReadingCancelled, SamplingCancelled, WritingCancelled)
 
 
-class Work(Protocol):
-    """What runs in the thread. share: the finished share. is_cancelled: set from outside."""
-
-    share: float
-    is_cancelled: bool
+class FileWork(Work, Protocol):
+    """Work on files."""
 
     def run(self, told: Callable[[float], None] = ...) -> None:
         """Work to the end, in any thread. Raises OSError, ValueError, or one of `_CANCELLED`."""
-
-    def status(self) -> str:
-        """What the status bar shows."""
 
     def cancelled(self) -> str:
         """What is reported after Esc."""
@@ -69,16 +61,14 @@ class Writing:
         return said("Storing was cancelled; nothing was changed")
 
 
-class ModalWork:
+class ModalWork(ModalThread):
     """A mix-in for operators. Nothing is changed in Blender before `_finish`."""
 
-    _timer = None
-
-    def _begin(self, context: bpy.types.Context) -> Work:
+    def _begin(self, context: bpy.types.Context) -> FileWork:
         """What to do. Raises OSError or ValueError with a sentence."""
         raise NotImplementedError
 
-    def _finish(self, context: bpy.types.Context, work: Work) -> None:
+    def _finish(self, context: bpy.types.Context, work: FileWork) -> None:
         """Use what is complete, and report. Raises OSError or ValueError with a sentence."""
         raise NotImplementedError
 
@@ -104,26 +94,17 @@ class ModalWork:
         if bpy.app.background:
             return self.run_now(context)
         try:
-            self._work = self._begin(context)
+            work = self._begin(context)
         except Exception as error:
             return self._fail(error)
-        self._executor = ThreadPoolExecutor(1)
-        self._done = self._executor.submit(self._work.run)
-        self._timer = context.window_manager.event_timer_add(_TIMER_SECONDS, window=context.window)
-        context.window_manager.modal_handler_add(self)
-        return {"RUNNING_MODAL"}
+        return self._begin_thread(context, work)
 
-    def modal(self, context, event):
-        if event.type == "ESC":
-            self._work.is_cancelled = True
-        if event.type != "TIMER":
-            return {"RUNNING_MODAL"}
-        context.workspace.status_text_set(self._work.status())
-        if not self._done.done():
-            return {"RUNNING_MODAL"}
-        self._end_modal(context)
+    def _advance(self, context):
+        if self._job is None:
+            return self._submit(self._work.run)
+        self._end_thread(context)
         try:
-            self._done.result()
+            self._job.result()
             self._finish(context, self._work)
         except _CANCELLED:
             self.report({"INFO"}, self._work.cancelled())
@@ -131,21 +112,6 @@ class ModalWork:
         except Exception as error:
             return self._fail(error)
         return {"FINISHED"}
-
-    def cancel(self, context):
-        """Blender calls this when it closes or loads another file."""
-        if hasattr(self, "_work"):
-            self._work.is_cancelled = True
-            self._end_modal(context)
-
-    def _end_modal(self, context):
-        """End what `invoke` began, once."""
-        timer, self._timer = self._timer, None
-        if timer is None:
-            return
-        self._executor.shutdown()
-        context.window_manager.event_timer_remove(timer)
-        context.workspace.status_text_set(None)
 
     def _fail(self, error: Exception):
         self.report({"ERROR"}, self._sentence(error))

@@ -211,7 +211,8 @@ def window(monkeypatch):
     """A context with what `modal` asks of a window, and texts of its status bar."""
     monkeypatch.setattr(modal_work, "bpy", SimpleNamespace(app=SimpleNamespace(background=False)))
     texts, calls = [], SimpleNamespace(event_timer_add=lambda *_, **__: 1, event_timer_remove=lambda _: None)
-    calls.modal_handler_add = lambda _: None
+    calls.modal_handler_add = calls.progress_update = lambda _: None
+    calls.progress_begin = calls.progress_end = lambda *_: None
     return SimpleNamespace(
         window_manager=calls, window=None, texts=texts, workspace=SimpleNamespace(status_text_set=texts.append)
     )
