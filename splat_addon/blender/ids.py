@@ -23,6 +23,7 @@ ADD_RENDER_PRESET = "render.surfel_preset_add"
 ADD_CONVERSION_PRESET = "object.surfel_conversion_preset_add"
 UPDATE_SURFELS = "object.surfels_update"
 STORE_SURFELS = "object.surfels_to_file"
+FILTER_SCAN = "object.surfels_filter"
 SELECT_STRAYS = "object.surfels_select_strays"
 SHOW_SURFELS = "view3d.surfels_show"
 SURFELS_OR_SOURCE = "object.surfels_or_source"
@@ -56,6 +57,9 @@ PAINTED_AS = "surfels_painted_as"
 
 #: The node group that deforms surfels with their source.
 SHAPE_GROUP = "Follow Shape"
+
+#: The node group that leaves out surfels of a scan.
+FILTER_GROUP = "Filter Scan"
 
 #: The node group that shows a surfel object in other engines and shading modes, and the material that it has there.
 POINTS_GROUP = "Surfels as Points"

@@ -51,6 +51,7 @@ PAGES = (
     ("bpy.ops.object.surfels_from_points*", _POINTS),
     ("bpy.ops.import_scene.surfels_ply*", _POINTS),
     ("bpy.ops.export_scene.surfels_ply*", _POINTS),
+    ("bpy.ops.object.surfels_filter*", _POINTS),
     ("bpy.ops.object.surfels_select_strays*", _POINTS),
     ("bpy.ops.render.surfel_scan_look*", _POINTS),
     ("bpy.ops.render.surfel_preset*", "choose.md#preset"),

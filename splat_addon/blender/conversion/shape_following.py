@@ -16,7 +16,7 @@ import numpy as np
 from ...sampling import TriangleMesh
 from ...surfels import Surfels
 from ..geometry.attributes import write_attribute
-from ..geometry.node_groups import input_of, known_group, new_modifier_group, uses_group
+from ..geometry.node_groups import give, identifier_of, input_of, known_group, new_modifier_group, uses_group
 from ..geometry.node_maths import Maths, Socket, enabled
 from ..geometry.reading import read_values
 from ..ids import POINT_ATTRIBUTES, REST, SHAPE_GROUP, PointAttribute
@@ -73,7 +73,7 @@ def follow_shape(made: bpy.types.Object, conversion, depsgraph: bpy.types.Depsgr
     made.modifiers.move(len(made.modifiers) - 1 - _pinned(made), 0)
     turns = not (surfels.has_uvs or surfels.clip_line is not None or surfels.normals_change)
     for name, value in (("Source", source), ("Vertices", len(mesh.positions)), ("Turns", float(turns))):
-        _give(modifier, name, value)
+        give(modifier, name, value)
     record_of(made).sources[0].shape = faces_of(source.evaluated_get(depsgraph).data)
     return None
 
@@ -117,7 +117,7 @@ def _why_not_now(modifier: bpy.types.NodesModifier, data: bpy.types.ID | None, f
     """How the evaluated data of a source differ from what surfels were bound to. faces: as `faces_of` told them, or an
     empty string."""
     # it may have been converted to a curve, or to an object of another type
-    count, bound = len(getattr(data, "vertices", ())), input_of(modifier, _identifier(modifier, "Vertices"))
+    count, bound = len(getattr(data, "vertices", ())), input_of(modifier, identifier_of(modifier, "Vertices"))
     if count != bound:
         return f"it has {count:,} vertices and had {bound:,}"
     return "it has other faces than" if faces and faces_of(data) != faces else None
@@ -136,20 +136,6 @@ def _unbind(made: bpy.types.Object) -> None:
 def _pinned(made: bpy.types.Object) -> int:
     """Number of modifiers that stay behind a new one."""
     return sum(modifier.use_pin_to_last for modifier in made.modifiers)
-
-
-def _identifier(modifier: bpy.types.NodesModifier, name: str) -> str:
-    items = modifier.node_group.interface.items_tree
-    return next(item.identifier for item in items if item.name == name and item.in_out == "INPUT")
-
-
-def _give(modifier: bpy.types.NodesModifier, name: str, value) -> None:
-    """Set an input of the modifier's node group."""
-    identifier = _identifier(modifier, name)
-    if hasattr(modifier, "properties"):
-        getattr(modifier.properties.inputs, identifier).value = value
-    else:
-        modifier[identifier] = value
 
 
 def _is_own_mesh(source: bpy.types.Object, mesh, depsgraph: bpy.types.Depsgraph) -> bool:

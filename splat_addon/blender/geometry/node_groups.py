@@ -31,6 +31,21 @@ def input_of(modifier: bpy.types.NodesModifier, identifier: str):
     return modifier.get(identifier)
 
 
+def identifier_of(modifier: bpy.types.NodesModifier, name: str) -> str:
+    """The identifier of an input of the modifier's node group."""
+    items = modifier.node_group.interface.items_tree
+    return next(item.identifier for item in items if item.name == name and item.in_out == "INPUT")
+
+
+def give(modifier: bpy.types.NodesModifier, name: str, value) -> None:
+    """Set an input of the modifier's node group."""
+    identifier = identifier_of(modifier, name)
+    if hasattr(modifier, "properties"):
+        getattr(modifier.properties.inputs, identifier).value = value
+    else:
+        modifier[identifier] = value
+
+
 def nodes_in(tree: bpy.types.NodeTree, seen: set | None = None) -> Iterator[bpy.types.Node]:
     """The nodes of a tree and of the groups in it, each group once. seen: trees that are left out."""
     seen = set() if seen is None else seen

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from . import (
     export_ply,
+    filter_scan,
     import_file,
     render_preset,
     scan_look,
@@ -23,6 +24,7 @@ MODULES = (
     update_surfels,
     store_surfels,
     export_ply,
+    filter_scan,
     import_file,
     render_preset,
     scan_look,

@@ -134,6 +134,11 @@ GERMAN = {
         "Textur, in deren Farbverlauf die Werte nachgeschlagen werden; ohne eine ein Verlauf gleichmäßiger Helligkeit"
     ),
     "Scan Look": "Scan-Aussehen",
+    "Filter Scan": "Scan filtern",
+    "Add a modifier that crops the surfels by a box, hides classes and thins to a spacing. Nothing stored changes": (
+        "Einen Modifikator hinzufügen, der die Surfels durch einen Quader beschneidet, Klassen ausblendet und auf "
+        "einen Abstand ausdünnt. Nichts Gespeichertes ändert sich"
+    ),
     "Select Strays": "Streupunkte auswählen",
     "Select surfels that stand alone or are much larger than those around them, in Edit Mode; nothing is deleted": (
         "Surfels auswählen, die allein stehen oder viel größer sind als die um sie herum, im Bearbeitungsmodus; nichts "

@@ -30,6 +30,7 @@ from ..geometry.surfel_files import file_of
 from ..ids import (
     CONVERSION_SETTINGS,
     EXPORT_PLY,
+    FILTER_SCAN,
     IMPORT_FILE,
     MESH_SETTINGS,
     OBJECT_SETTINGS,
@@ -194,6 +195,7 @@ def _draw_scan(layout: bpy.types.UILayout, what: Chosen) -> None:
         return
     layout.operator(SCAN_LOOK, icon="SHADING_TEXTURE")
     layout.operator(SELECT_STRAYS, icon="RESTRICT_SELECT_OFF")
+    layout.operator(FILTER_SCAN, icon="FILTER")
     column = layout.column()
     column.use_property_split = True
     column.use_property_decorate = False
