@@ -5,6 +5,7 @@
 
 const float FOOTPRINT_END = 1.0;
 const float LOW_PASS_RADIUS = 1.41421356;  // of the screen-space filter, in pixels
+const float OVER_RIM = 0.25;  // in radii: how far from the depths of the ellipse what the low-pass adds may be
 
 // Half the side of the paper's square, in pixels: that of the bounding sphere if it were on the axis, at least 1.
 float half_square(Plane plane) {
@@ -15,7 +16,7 @@ float half_square(Plane plane) {
 #part vertex
 // Beyond the ellipse the paper's depths are those of the plane, as near as that comes.
 void adjust(inout Splat splat, inout Plane plane, bool is_orthographic) {
-  if (AS_PRINTED) plane.reach = plane.depth - view.near;
+  plane.reach = AS_PRINTED ? plane.depth - view.near : min(plane.reach, length(plane.slope) + OVER_RIM * plane.radius);
 }
 
 // The ellipse and the low-pass disc of sqrt(2) pixels around the splat's centre.
@@ -27,14 +28,13 @@ vec2 footprint(Plane plane, vec2 size, inout vec2 middle) {
   return 1.05 * max(size, vec2(LOW_PASS_RADIUS)) + length(plane.center - middle);
 }
 #part fragment
-// Weight and depth: that of the plane inside the ellipse, that of the centre where only the low-pass reaches; as printed
-// that of the plane there too, where the eye sees it.
+// Weight and depth: that of the plane, held near the ellipse where only the low-pass reaches, or as printed not held.
 vec2 splat_sample(Plane plane, vec2 pixel) {
   Place place = place_at(plane, pixel);
   float inside = dot(place.uv, place.uv);
   bool is_inside = inside <= 1.0 && place.k > 0.0;
   float rho2 = min(is_inside ? inside : 2.0, 0.5 * dot(place.d, place.d));
   bool is_drawn = !AS_PRINTED || (max(abs(place.d.x), abs(place.d.y)) <= half_square(plane) && place.k > 0.0);
-  float depth = plane.depth + (is_inside || AS_PRINTED ? dot(plane.slope, place.uv) : 0.0);
+  float depth = AS_PRINTED ? plane.depth + dot(plane.slope, place.uv) : plane_depth(plane, place);
   return vec2(is_drawn && rho2 <= 1.0 ? exp(-2.0 * rho2) : 0.0, depth);
 }

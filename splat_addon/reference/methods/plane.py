@@ -98,10 +98,10 @@ def gradients(plane: Plane, at: Places, pixel: np.ndarray) -> np.ndarray:
         return np.moveaxis(rows * (at.k / at.det), -1, 0) * pixel
 
 
-def plane_depth(plane: Plane, at: Places, pixel: np.ndarray, filter_pixels: float) -> np.ndarray:
-    """(M,) depth of the plane, clamped near the splat."""
+def plane_depth(plane: Plane, at: Places, pixel: np.ndarray, filter_pixels: float, furthest: float = 16) -> np.ndarray:
+    """(M,) depth of the plane, clamped near the splat. furthest: from the depths of its ellipse, in radii."""
     steepest = np.linalg.norm(plane.gradient * pixel)
-    reach = np.linalg.norm(plane.slope) + min(2 * filter_pixels * steepest, 16 * plane.radius)
+    reach = np.linalg.norm(plane.slope) + min(2 * filter_pixels * steepest, furthest * plane.radius)
     depth = np.clip(plane.depth + at.uv @ plane.slope, plane.depth - reach, plane.depth + reach)
     return np.where(at.k > 0, depth, plane.depth)
 
