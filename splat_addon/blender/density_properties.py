@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from bpy.props import BoolProperty, FloatProperty, IntProperty
 
-from ..sampling import DEFAULT_SPLAT_SIZE
+from ..sampling import DEFAULT_SPLAT_SIZE, SamplingOptions
 from .conversion.automatic_density import FALLBACK_RESOLUTION, MOST_SURFELS
 
 
@@ -71,6 +71,14 @@ def texture_mapped_property():
         "sharper, but frames take several times as long without a graphics card"
     )
     return BoolProperty(name="Texture-Mapped", description=description, default=False)
+
+
+def normal_fields_property():
+    description = (
+        "Let the shading normal change over each surfel. Surfels that are several pixels large are lit more like "
+        "the curved surface that they stand for, but take slightly more memory"
+    )
+    return BoolProperty(name="Phong Splatting", description=description, default=SamplingOptions.normal_fields)
 
 
 def splat_size_property(description: str, soft_max: float):

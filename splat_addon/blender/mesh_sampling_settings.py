@@ -10,6 +10,7 @@ from bpy.props import EnumProperty, FloatProperty, StringProperty
 
 from .density_properties import (
     DENSITIES,
+    normal_fields_property,
     pixels_property,
     resolution_property,
     spacing_property,
@@ -100,10 +101,13 @@ class MeshSamplingProperties:
     )
     mesh_pixels: pixels_property("An object is sampled again when it comes much closer", min=0.1, update=_read_again)
     mesh_textures: texture_mapped_property()
+    mesh_normal_fields: normal_fields_property()
 
 
-def are_meshes_texture_mapped(scene: bpy.types.Scene) -> bool:
-    return getattr(scene, RENDER_SETTINGS).mesh_textures
+def looks_of_meshes(scene: bpy.types.Scene) -> dict[str, bool]:
+    """What surfels of meshes store to look more like these, as options of sampling."""
+    properties = getattr(scene, RENDER_SETTINGS)
+    return {"texture_mapped": properties.mesh_textures, "normal_fields": properties.mesh_normal_fields}
 
 
 def density_of_meshes(scene: bpy.types.Scene) -> dict[str, float]:

@@ -66,9 +66,10 @@ def test_the_librarys_defaults_are_those_of_conversions(door, shape, mesh, surfe
     held(door(shape, surfels_of), sample_mesh(mesh, spacing=SPACING))
 
 
-def test_meshes_that_are_rendered_as_surfels_differ_by_their_equal_sizes_alone(mesh):
-    live = live_meshes._deforming(mesh, SPACING, False, True, False).at(mesh)[0]
-    held(live, sample_mesh(mesh, spacing=SPACING, tolerance=None))
+@pytest.mark.parametrize("looks", ({}, {"normal_fields": True}))
+def test_meshes_that_are_rendered_as_surfels_differ_by_their_equal_sizes_alone(looks, mesh):
+    live = live_meshes._deforming(mesh, SPACING, looks, True, False).at(mesh)[0]
+    held(live, sample_mesh(mesh, spacing=SPACING, tolerance=None, **looks))
 
 
 def test_plain_surfels_have_nothing_of_it(mesh):

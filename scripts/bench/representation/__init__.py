@@ -56,6 +56,7 @@ def arguments(parser) -> None:
     parser.add_argument("--tolerance", type=float, default=1.0, help="Detail Tolerance, in pixels")
     parser.add_argument("--exact", type=int, default=0, help="samples along a pixel of exact pictures; 0 for none")
     parser.add_argument("--lit", action="store_true", help="measure lit pictures with changing normals instead")
+    parser.add_argument("--fitted", action="store_true", help="lit pictures of normals that are fitted, too")
     parser.add_argument("--points", type=int, default=0, help="measure random points of this number instead")
     parser.add_argument("--noise", type=float, nargs="+", default=[0.0], help="of points, in spacings")
     parser.add_argument("--kind", nargs="+", default=list(KINDS), choices=KINDS, help="of exact pictures")

@@ -4,8 +4,9 @@
 The truth shades 6 x 6 samples a pixel of the mesh's interpolated normals by Blinn's formula in float64, under one sun
 that casts no shadow, seen by a parallel camera. "now": surfels whose normal is one for each, at this resolution;
 "fields": normals change by half of what is stored; "whole": by all of it, as the paper has it; "half": fields at half
-the resolution. PSNR: of the picture, and inside of the mesh's outline, two pixels away from it. Frame: median ratio of
-the processor time of a frame to that of "now".
+the resolution; with --fitted, these after a fit to all that is seen, of the normals alone, and of their changes, too
+(`fitted`). PSNR: of the picture, and inside of the mesh's outline, two pixels away from it. Frame: median ratio of the
+processor time of a frame to that of "now".
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ import numpy as np
 from scipy.ndimage import binary_erosion
 
 from bench.representation.error import over_grey
+from bench.representation.fitted import fitted, seen_by_rays
 from bench.representation.meshes import view
 from measuring.models import short
 from measuring.timing import Spread, in_turn, processor
@@ -45,6 +47,12 @@ def rows(meshes, renderer, options):
                 "fields": sample_mesh(mesh, resolution=resolution, normal_fields=True),
                 "half": sample_mesh(mesh, resolution=resolution / 2, normal_fields=True),
             }
+            if options.fitted:
+                seen = seen_by_rays(sampled["half"], mesh)
+                sampled |= {
+                    "half, fitted normals": fitted(sampled["half"], seen, False),
+                    "half, fitted": fitted(sampled["half"], seen, True),
+                }
             for k in range(options.views):
                 camera = parallel(mesh, k, options.size)
                 for roughness in (0.3, 0.8):

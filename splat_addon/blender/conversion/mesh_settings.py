@@ -12,6 +12,7 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 from ...sampling import LEAST_GRAZING_ANGLE, REDUCTIONS, SamplingOptions
 from ..density_properties import (
     DENSITIES,
+    normal_fields_property,
     pixels_property,
     resolution_property,
     spacing_property,
@@ -122,14 +123,7 @@ class ConversionProperties:
         default=False,
     )
     texture_mapped: texture_mapped_property()
-    normal_fields: BoolProperty(
-        name="Phong Splatting",
-        description=(
-            "Let the shading normal change over each surfel. Surfels that are several pixels large are lit more like "
-            "the curved surface that they stand for, but take slightly more memory"
-        ),
-        default=SamplingOptions.normal_fields,
-    )
+    normal_fields: normal_fields_property()
     clips_edges: BoolProperty(
         name="End at Edges",
         description=(

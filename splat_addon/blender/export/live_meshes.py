@@ -82,7 +82,8 @@ class LiveMesh:
     object has shape keys or modifiers that deform it.
 
     key: result of `mesh_key` for the evaluation that was read. asked: result of `_asked_of` for it. held: result of
-        `held_slots`. shown: a sampling, and the surfels drawn from it.
+        `held_slots`. looks: the options of sampling that were chosen, see `looks_of_meshes`. shown: a sampling, and the
+        surfels drawn from it.
     """
 
     key: tuple = ()
@@ -93,7 +94,7 @@ class LiveMesh:
     held: list[int] = field(default_factory=list)
     textures: tuple[SurfaceTexture | None, ...] = ()
     normal_maps: tuple[NormalTexture | None, ...] = ()
-    texture_mapped: bool = False
+    looks: dict[str, bool] = field(default_factory=dict)
     places: list[Place] = field(default_factory=list)
     owner: str = ""
     said: list[str] = field(default_factory=list)
@@ -259,9 +260,10 @@ class LiveMeshes:
         return self._frame[key]
 
     def instances(
-        self, depsgraph: bpy.types.Depsgraph, density: dict[str, float], texture_mapped: bool, notes
+        self, depsgraph: bpy.types.Depsgraph, density: dict[str, float], looks: dict[str, bool], notes
     ) -> tuple[list[Instance], list[PolygonInstance]]:
-        """All instances added to this frame; the places of one mesh share its surfels or polygons."""
+        """All instances added to this frame; the places of one mesh share its surfels or polygons. looks: options of
+        sampling by name, see `looks_of_meshes`."""
         sampled, drawn = [], []
         for live in self._frame.values():
             if not live.places:
@@ -274,7 +276,7 @@ class LiveMeshes:
                 if live.sampled_at and len(live.sampled_part):
                     if live.strays:
                         notes.add(f"{live.owner}: left out of its surfels are {stray_triangles(live.strays)}")
-                    sampled += self._sampled_instances(live, depsgraph, density, texture_mapped)
+                    sampled += self._sampled_instances(live, depsgraph, density, looks)
                 if live.drawn_at and len(live.drawn_part):
                     drawn += self._polygon_instances(live, notes)
             except Exception as error:
@@ -282,8 +284,8 @@ class LiveMeshes:
         self._kept = {name: live for name, live in self._kept.items() if name in self._names}
         return sampled, drawn
 
-    def _sampled_instances(self, live: LiveMesh, depsgraph, density, texture_mapped: bool) -> list[Instance]:
-        sampled = self._sampled(live, depsgraph, finer(density, live.detail), texture_mapped)
+    def _sampled_instances(self, live: LiveMesh, depsgraph, density, looks: dict[str, bool]) -> list[Instance]:
+        sampled = self._sampled(live, depsgraph, finer(density, live.detail), looks)
         if live.shown is None or live.shown[0] is not sampled:
             whole = joined_at_edges(sampled, *live.parts, live.spacing) if live.parts else sampled
             before, live.shown = live.shown, (sampled, whole)
@@ -339,11 +341,11 @@ class LiveMeshes:
             live.held = held_slots(slots)
 
     def _sampled(
-        self, live: LiveMesh, depsgraph: bpy.types.Depsgraph, density: dict[str, float], texture_mapped: bool
+        self, live: LiveMesh, depsgraph: bpy.types.Depsgraph, density: dict[str, float], looks: dict[str, bool]
     ) -> Surfels:
         """The sampling of a mesh. Raises ValueError with a sentence if it cannot be sampled."""
-        if texture_mapped != live.texture_mapped:
-            live.deforming, live.texture_mapped = None, texture_mapped
+        if looks != live.looks:
+            live.deforming, live.looks = None, looks
         mesh, spacing = live.sampled_part, live.spacing_for(density, depsgraph)
         if live.deforming is not None and spacing == live.spacing and live.deforming.has_triangles_of(mesh):
             surfels, stretched = live.deforming.at(mesh)
@@ -358,7 +360,7 @@ class LiveMeshes:
             spacing *= math.sqrt(predicted / self._most)
         elif predicted > MAX_SURFELS:
             raise ValueError(f"It would be {predicted:,} surfels and the limit is {MAX_SURFELS:,}; sample it coarser.")
-        live.deforming = _deforming(mesh, spacing, texture_mapped, live.parts is None, live.bends)
+        live.deforming = _deforming(mesh, spacing, looks, live.parts is None, live.bends)
         live.density, live.spacing = density, spacing
         self.counts["sampled"] += 1
         return live.deforming.at(mesh)[0]
@@ -371,7 +373,7 @@ def _asked_of(evaluated: bpy.types.Object) -> tuple:
 
 
 def _deforming(
-    mesh: TriangleMesh, spacing: float, texture_mapped: bool, ends_at_edges: bool, bends: bool
+    mesh: TriangleMesh, spacing: float, looks: dict[str, bool], ends_at_edges: bool, bends: bool
 ) -> DeformingSurfels:
     """A mesh sampled as the operator does. ends_at_edges: False for a part of a mesh whose border continues as
     polygons. bends: whether planes that fit the mesh now will not fit it later.
@@ -379,7 +381,7 @@ def _deforming(
     edges = {} if ends_at_edges else {"crease_angle": None}
     if bends:
         edges["fits_planes"] = False
-    return DeformingSurfels(mesh, spacing=spacing, texture_mapped=texture_mapped, deforms=bends, **edges)
+    return DeformingSurfels(mesh, spacing=spacing, deforms=bends, **looks, **edges)
 
 
 def _not_finite(mesh: TriangleMesh) -> int:

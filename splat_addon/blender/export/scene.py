@@ -41,7 +41,7 @@ from ..geometry.sources import asked_of, may_change, owner_of
 from ..ids import OBJECT_SETTINGS, POINT_ATTRIBUTES
 from ..materials.material_override import overridden, override_of
 from ..materials.surface_textures import TextureStore
-from ..mesh_sampling_settings import Form, are_meshes_texture_mapped, density_of_meshes, form_of
+from ..mesh_sampling_settings import Form, density_of_meshes, form_of, looks_of_meshes
 from . import passed_over
 from .entries import kind_of, matrices_of
 from .holdouts import held_slots, with_holes
@@ -194,7 +194,7 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
             f"do not: convert {older[0]}{f' and {len(older) - 1:,} more' if older[1:] else ''} again"
         )
     sampled, polygons = live_meshes.instances(
-        depsgraph, density_of_meshes(bpy_scene), are_meshes_texture_mapped(bpy_scene), notes
+        depsgraph, density_of_meshes(bpy_scene), looks_of_meshes(bpy_scene), notes
     )
     lights = (replace(light, receivers=light_sets.lit_by(number)) for number, light in enumerate(lights))
     scene = Scene((*things.surfels, *sampled), tuple(lights), polygons=tuple(polygons))

@@ -230,6 +230,7 @@ class RENDER_PT_surfel_meshes(_RenderPanel, bpy.types.Panel):
         properties = getattr(context.scene, RENDER_SETTINGS)
         self.layout.prop(properties, NUMBERED[properties.mesh_density][0])
         self.layout.prop(properties, "mesh_textures")
+        self.layout.prop(properties, "mesh_normal_fields")
 
 
 #: Blender's panels whose settings this engine does not have, or replaces with its own; so are all of Freestyle's.

@@ -384,6 +384,18 @@ def test_a_preview_samples_large_meshes_coarsely(live):
     assert 300 < len(instance.surfels) < 500
 
 
+def test_normals_change_over_surfels_while_phong_splatting_is_chosen(live):
+    bpy.ops.mesh.primitive_uv_sphere_add()
+    bpy.ops.object.shade_smooth()
+    kept = LiveMeshes()
+    for is_chosen in (False, True, False):
+        live.mesh_normal_fields = is_chosen
+        kept.begin_frame()
+        found, _ = export_scene(bpy.context.evaluated_depsgraph_get(), SurfelStore(), kept)
+        (instance,) = found.surfels
+        assert instance.surfels.normals_change is is_chosen
+
+
 @pytest.mark.parametrize("form", ["POLYGONS", "SURFELS"])
 def test_faces_without_a_place_and_strays_among_surfels_are_counted_in_notes(form, add_mesh):
     axis = np.linspace(0, 1, 9)
