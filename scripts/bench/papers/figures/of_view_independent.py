@@ -137,7 +137,8 @@ def colored_by_image(name: str):
     chosen = REDUCTIONS[name]
 
     def merge(arrays, axes, spacing):
-        colored = {**arrays, "colors": np.eye(4, dtype=np.float32)[axes] * 0.8 + (0.05, 0.05, 0.05, 1)}
+        colors = np.eye(4)[axes] * 0.8 + (0.05, 0.05, 0.05, 1)
+        colored = {**arrays, "colors": colors.astype(np.float32)}
         return chosen.merge(colored, axes, spacing) if chosen.merge else colored
 
     with patch.dict(REDUCTIONS, {name: replace(chosen, merge=merge)}):
