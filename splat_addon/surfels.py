@@ -437,7 +437,7 @@ def _finite(rows: np.ndarray) -> np.ndarray:
     return finite.all() or finite.reshape(len(rows), -1).all(axis=1)
 
 
-def _unit(rows: np.ndarray) -> np.ndarray:
+def _are_unit(rows: np.ndarray) -> np.ndarray:
     # A product with a vector of ones, because numpy's own sums are slow along an axis of three or four.
     with np.errstate(over="ignore", invalid="ignore"):
         off = (rows * rows) @ np.ones(rows.shape[1], rows.dtype)
@@ -452,8 +452,8 @@ def _sizes(rows: np.ndarray) -> np.ndarray:
 
 #: Requirements beyond being finite: (n, columns) rows -> (n,) bool, or one bool for all.
 _CHECKS = {
-    "rotations": _unit,
-    "normals": _unit,
+    "rotations": _are_unit,
+    "normals": _are_unit,
     "scales": _sizes,
     "materials": lambda rows: rows >= 0,
     "clip_line": lambda rows: rows[:, 1] >= 0,

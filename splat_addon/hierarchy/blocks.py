@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..runs import expand, ranges
 from .runs import Runs
 
 #: Maximum number of entries in a block above the surfels' level, and of surfels in one. A block is as coarse as the
@@ -65,13 +66,6 @@ class Blocks:
         return len(self.first)
 
 
-def ranges(starts: np.ndarray, counts: np.ndarray) -> np.ndarray:
-    """start, start + 1, ... of all runs, concatenated."""
-    ends = np.cumsum(counts)
-    total = int(ends[-1]) if len(ends) else 0
-    return np.arange(total) + np.repeat(starts - (ends - counts), counts)
-
-
 def depth_first(levels: list[Level], surfels: int) -> tuple[list[np.ndarray], list[np.ndarray]]:
     """The entries of each level, the surfels' level first, in the order of their parents; and each parent's
     number of children.
@@ -120,8 +114,7 @@ def _between(first: np.ndarray, last: np.ndarray, most: int) -> tuple[np.ndarray
     """Runs cut into equal pieces of at most `most`: starts, ends, and the number of pieces of each run."""
     size = last - first
     parts = -(-size // most)
-    owner = np.repeat(np.arange(len(first)), parts)
-    number = np.arange(len(owner)) - np.repeat(np.cumsum(parts) - parts, parts)
+    owner, number = expand(parts)
     cuts = [first[owner] + size[owner] * (number + k) // parts[owner] for k in (0, 1)]
     return cuts[0], cuts[1], parts
 

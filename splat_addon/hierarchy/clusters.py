@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .blocks import ranges
+from ..runs import ranges
 from .nodes import PORTION, Leaves, Table
 from .ordering import BITS, sorted_with_order
 

@@ -13,7 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .blocks import Blocks, ranges
+from ..runs import ranges
+from .blocks import Blocks
 from .building import Hierarchy
 
 

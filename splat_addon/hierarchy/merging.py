@@ -40,7 +40,7 @@ def merged(children: Nodes, cell: float) -> Nodes:
     shares = children["areas"] / areas
     centre = total(children["positions"] * shares)
     offsets = children["positions"] - for_children(centre)
-    normal = _unit(total(children["normals"] * shares))
+    normal = _unit_columns(total(children["normals"] * shares))
     frame = _ellipse(children, shares, offsets, normal)
     shading = total(children["shading"] * shares)
     length = np.sqrt(np.einsum("kn,kn->n", shading, shading))
@@ -110,7 +110,7 @@ def as_surfels(nodes: Table, like: Surfels) -> Surfels:
     )
 
 
-def _unit(vectors: np.ndarray) -> np.ndarray:
+def _unit_columns(vectors: np.ndarray) -> np.ndarray:
     """Unit sums of normals. They all face one axis, so a sum cannot vanish."""
     return vectors / np.sqrt(np.einsum("kn,kn->n", vectors, vectors))
 

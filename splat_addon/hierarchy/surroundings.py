@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .blocks import ranges
+from ..runs import ranges
 from .families import dot
 from .merged_lines import as_planes
 from .nodes import Nodes, Table

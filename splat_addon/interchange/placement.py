@@ -12,6 +12,7 @@ from ..clip_lines import CLIP_FIELDS, turned
 from ..normal_fields import changes, dot, fields_of
 from ..quaternions import axes_quaternions, quaternion_axes
 from ..surfels import Surfels, concatenate, empty_surfels
+from ..vectors import unit
 
 
 def transformed(surfels: Surfels, matrix: np.ndarray) -> Surfels:
@@ -35,9 +36,9 @@ def transformed(surfels: Surfels, matrix: np.ndarray) -> Surfels:
     angle[np.abs(pq) < 1e-6 * np.sqrt(pp * qq)] = 0
     long, short = p * np.cos(angle) + q * np.sin(angle), q * np.cos(angle) - p * np.sin(angle)
     normals, geometric = (
-        _unit(n.astype(np.float64) @ np.linalg.inv(linear)) for n in (surfels.normals, surfels.geometric_normals())
+        unit(n.astype(np.float64) @ np.linalg.inv(linear)) for n in (surfels.normals, surfels.geometric_normals())
     )
-    x = _unit(long)
+    x = unit(long)
     y = np.cross(geometric, x)
     uvs = {}
     if surfels.has_uvs:
@@ -116,7 +117,3 @@ def joined(parts: list[Surfels]) -> Surfels:
             for p in parts
         ]
     )
-
-
-def _unit(vectors: np.ndarray) -> np.ndarray:
-    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)

@@ -12,6 +12,7 @@ import numpy as np
 
 from ..rendering.frame import EMPTY_DEPTH, Frame
 from ..rendering.scene.camera import Camera
+from ..vectors import unit
 
 #: Slices run along whole steps of up to this many pixels; there are 16 of them.
 MOST_STEP = 4
@@ -27,14 +28,14 @@ def open_share(frame: Frame, camera: Camera, distance: float) -> np.ndarray:
     position = np.where((frame.depth < EMPTY_DEPTH)[..., None], camera.points_at(frame.depth), np.nan)
     normal = frame.normal / np.maximum(np.linalg.norm(frame.normal, axis=2, keepdims=True), 1e-30)
     turned = camera.matrix_world[:3, :3]
-    to_eye = turned[:, 2] if camera.is_orthographic else _unit(camera.matrix_world[:3, 3] - position)
+    to_eye = turned[:, 2] if camera.is_orthographic else unit(camera.matrix_world[:3, 3] - position)
     left, right, bottom, top = camera.window
     pixel = np.array(((right - left) / camera.size[0], (top - bottom) / camera.size[1]))
     facing = np.maximum((normal * to_eye).sum(axis=2), LEAST_FACING)
     total, unhidden = np.zeros(facing.shape), np.zeros(facing.shape)
     for along, width in _slices():
         across = turned[:, :2] @ (pixel * along) + np.zeros_like(position)
-        across = _unit(across - to_eye * (across * to_eye).sum(axis=2, keepdims=True))
+        across = unit(across - to_eye * (across * to_eye).sum(axis=2, keepdims=True))
         aside = (normal * across).sum(axis=2)
         size, tilt = np.hypot(facing, aside), np.arctan2(aside, facing)
         after = np.arccos(_horizon(position, to_eye, along, distance, -aside / size))
@@ -73,7 +74,3 @@ def _horizon(position, to_eye, along, distance: float, lowest) -> np.ndarray:
 
 def _arc(angle, tilt) -> np.ndarray:
     return (np.cos(tilt) - np.cos(2 * angle - tilt) + 2 * angle * np.sin(tilt)) / 4
-
-
-def _unit(vector) -> np.ndarray:
-    return vector / np.linalg.norm(vector, axis=-1, keepdims=True)

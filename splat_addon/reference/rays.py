@@ -14,6 +14,7 @@ import numpy as np
 
 from ..clip_lines import kept
 from ..rendering.scene.camera import Camera
+from ..runs import expand
 from .brdf import unit
 from .splats import Splats
 from .textures import point_colors
@@ -290,10 +291,10 @@ def candidates(rows: np.ndarray, first: np.ndarray, end: np.ndarray, grid: RayGr
     chunk = np.cumsum(pairs) // CHUNK_PAIRS
     for part in np.split(np.arange(len(pairs)), np.flatnonzero(np.diff(chunk)) + 1):
         count, low, width = pairs[part], first[part], (end - first)[part, 0]
-        within = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
-        row, column = np.divmod(within, np.repeat(width, count))
-        ray = (row + np.repeat(low[:, 1], count)) * grid.shape[1] + column + np.repeat(low[:, 0], count)
-        yield ray, np.repeat(rows[part], count)
+        owner, within = expand(count)
+        row, column = np.divmod(within, width[owner])
+        ray = (row + low[owner, 1]) * grid.shape[1] + column + low[owner, 0]
+        yield ray, rows[part][owner]
 
 
 def _intersections(splats: Splats, ray, splat, grid: RayGrid) -> Hits:

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..rendering.scene.camera import Camera
+from ..runs import expand
 from .filters import filter_weights, resample
 
 #: Triangle-sample pairs per batch: about 100 bytes each.
@@ -102,8 +103,8 @@ def _samples(places: np.ndarray, over_depth: np.ndarray, colors: np.ndarray, sha
     depths += (x1 * y2 > x2 * y1)[:, None] * SAME_DEPTH * np.abs(depths)
     nearest, owner = np.full(shape[0] * shape[1], -np.inf), np.full(shape[0] * shape[1], -1)
     for triangle, row, first, count in _spans(places, shares, shape):
-        span = np.repeat(np.arange(len(count)), count)
-        column = np.arange(len(span)) - np.repeat(np.cumsum(count) - count, count) + first[span]
+        span, column = expand(count)
+        column += first[span]
         at = row[span] * shape[1] + column
         per_column, at_row = depths[triangle, 0], depths[triangle, 1] * row + depths[triangle, 2]
         near = per_column[span] * column + at_row[span]
@@ -148,8 +149,9 @@ def _spans(places: np.ndarray, shares: np.ndarray, shape: tuple[int, int]):
     seen = np.flatnonzero((rows > 0) & np.isfinite(shares).all(axis=(1, 2)))
     load = np.cumsum(rows[seen] * width[seen])
     for part in np.split(seen, np.flatnonzero(np.diff(load // CHUNK_PAIRS)) + 1):
-        triangle = np.repeat(part, rows[part])
-        row = np.arange(len(triangle)) - np.repeat(np.cumsum(rows[part]) - rows[part], rows[part]) + low[triangle]
+        owner, row = expand(rows[part])
+        triangle = part[owner]
+        row += low[triangle]
         first, last = np.zeros(len(row)), np.full(len(row), shape[1] - 1.0)
         for k in range(3):
             slope, at_zero = shares[triangle, k, 0], shares[triangle, k, 1] * row + shares[triangle, k, 2]

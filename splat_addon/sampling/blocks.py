@@ -18,10 +18,11 @@ from dataclasses import dataclass, fields, is_dataclass
 import numpy as np
 
 from ..array_files import StoredArrays, opened_arrays, write_arrays
+from ..runs import expand
 from ..surfels import LAYOUT, empty_surfels
 from .ldc.depth_cube import surface_of
 from .ldc.missed_components import SampledSurface, missed_components
-from .ldc.scan_conversion import Spans, expand
+from .ldc.scan_conversion import Spans
 from .mesh.triangle_mesh import TriangleMesh
 from .options import SamplingOptions
 from .progress import Progress, stage

@@ -7,7 +7,7 @@ import os
 
 import numpy as np
 
-from ..hierarchy.blocks import ranges
+from ..runs import ranges
 from .block_file import BlockFile
 from .layout import PAGE
 from .pages import AT_ONCE

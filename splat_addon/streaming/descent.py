@@ -12,8 +12,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..hierarchy import Sight
-from ..hierarchy.blocks import Blocks, ranges
+from ..hierarchy.blocks import Blocks
 from ..hierarchy.cuts import Boxes, may_be_seen, pixels_of_errors
+from ..runs import ranges
 from .pages import Pages, Readable
 from .table import Table
 

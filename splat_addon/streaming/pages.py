@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..hierarchy.blocks import ranges
+from ..runs import ranges
 from .block_file import BlockFile
 from .layout import PAGE
 from .table import Table

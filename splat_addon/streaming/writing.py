@@ -12,7 +12,8 @@ from typing import BinaryIO
 import numpy as np
 
 from ..hierarchy import build_hierarchy
-from ..hierarchy.blocks import Blocks, ranges
+from ..hierarchy.blocks import Blocks
+from ..runs import ranges
 from ..surfels import Surfels
 from ..whole_files import unfinished
 from .buckets import Survey, filled, portions_of, surveyed

@@ -9,8 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from splat_addon.hierarchy import Sight, Split, build_hierarchy, cut_blocks, entries_of
-from splat_addon.hierarchy.blocks import depth_first, make_blocks, ranges
+from splat_addon.hierarchy.blocks import depth_first, make_blocks
 from splat_addon.hierarchy.building import build_levels
+from splat_addon.runs import ranges
 
 from .conftest import ball, leaves_of, make_surfels, sheet
 

@@ -6,11 +6,11 @@ import gzip
 import numpy as np
 import pytest
 
+from splat_addon.runs import expand
 from splat_addon.sampling import TriangleMesh, drop_unusable, grid_spacing
 from splat_addon.sampling.ldc.depth_cube import depth_cube
 from splat_addon.sampling.ldc.grid import make_grid
 from splat_addon.sampling.ldc.missed_components import SampledSurface
-from splat_addon.sampling.ldc.scan_conversion import expand
 
 
 @pytest.fixture

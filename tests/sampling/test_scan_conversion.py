@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from splat_addon.sampling.ldc.scan_conversion import Spans, batches, expand, scan_convert
+from splat_addon.runs import expand
+from splat_addon.sampling.ldc.scan_conversion import Spans, batches, scan_convert
 
 LARGEST = 2**25
 

@@ -8,7 +8,7 @@ import struct
 import numpy as np
 import pytest
 
-from splat_addon.hierarchy.blocks import ranges
+from splat_addon.runs import ranges
 from splat_addon.streaming import BlockFile, WritingCancelled, check, write_blocks
 from splat_addon.streaming.layout import PAGE
 from splat_addon.surfels import Surfels, empty_surfels

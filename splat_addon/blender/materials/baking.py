@@ -13,6 +13,7 @@ from mathutils import Matrix
 
 from ...sampling import Surface
 from ...surfels import OPTIONAL_LAYOUT, Surfels
+from ...vectors import unit
 from ..geometry.node_groups import nodes_in
 from .bake_scene import BakeScene
 from .material_surfaces import Unread
@@ -63,7 +64,7 @@ def baked(surfels: Surfels, what: Bakeable, depsgraph: bpy.types.Depsgraph) -> t
                 corners = _corners(surfels.positions[chunk] + surfels.origin, half_axes[:, chunk], matrix)
                 values = _means(scene.bake(kind, channel, materials, corners, reach))
                 if channel == "normal_map":
-                    values = _unit((2 * values - 1) @ matrix[:3, :3])
+                    values = unit((2 * values - 1) @ matrix[:3, :3])
                 good = np.isfinite(values).all(axis=1)
                 missed += int(np.count_nonzero(~good))
                 target[chunk[good]] = values[good] if target.ndim == 2 else values[good, 0]
@@ -158,8 +159,3 @@ def _means(cells: np.ndarray) -> np.ndarray:
     total = np.where(met[..., None], cells, 0).sum(axis=1)
     with np.errstate(invalid="ignore"):
         return total / met.sum(axis=1)[:, None]
-
-
-def _unit(vectors: np.ndarray) -> np.ndarray:
-    with np.errstate(invalid="ignore", divide="ignore"):
-        return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)

@@ -12,8 +12,9 @@ import numpy as np
 
 from ...normal_fields import NORMAL_FIELDS, fields_of
 from ...quaternions import axes_columns
+from ...runs import expand
 from ..ldc.grid import Grid
-from ..ldc.scan_conversion import Spans, expand
+from ..ldc.scan_conversion import Spans
 from ..materials.material_sampler import MaterialSampler, Samples
 from ..materials.texture_mapping import BORDER, axis_steps, fill_uvs
 from ..mesh.triangle_mesh import TriangleMesh, corner_indices, corners_at, crossed, doubled_areas

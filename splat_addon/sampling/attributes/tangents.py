@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...vectors import unit
 from ..mesh.triangle_mesh import TriangleMesh
 
 
@@ -30,21 +31,21 @@ def corner_tangents(mesh: TriangleMesh, uvs: np.ndarray) -> np.ndarray:
     """
     corners = mesh.positions[mesh.triangles]
     uvs = np.asarray(uvs, np.float64)
-    face_normals = _unit(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
+    face_normals = unit(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
     if mesh.corner_normals is None:
         normals = np.broadcast_to(face_normals[:, None], corners.shape)
     else:
-        given = _unit(np.asarray(mesh.corner_normals, np.float64))
+        given = unit(np.asarray(mesh.corner_normals, np.float64))
         normals = np.where(np.isfinite(given).all(axis=2, keepdims=True), given, face_normals[:, None])
     along_u, mirrored = _directions(corners, uvs)
-    flattened = _unit(_flattened(along_u[:, None], normals))
+    flattened = unit(_flattened(along_u[:, None], normals))
     # The angle between a corner's edges, both projected perpendicular to its normal.
-    next_edge, last_edge = (_unit(_flattened(np.roll(corners, -k, axis=1) - corners, normals)) for k in (1, 2))
+    next_edge, last_edge = (unit(_flattened(np.roll(corners, -k, axis=1) - corners, normals)) for k in (1, 2))
     angles = np.arccos(np.clip((next_edge * last_edge).sum(axis=2), -1, 1))
     weighted = np.nan_to_num(flattened * angles[..., None], posinf=0, neginf=0)
     group = _groups(mesh.triangles, normals, uvs, mirrored)
     sums = np.stack([np.bincount(group, column)[group] for column in weighted.reshape(-1, 3).T], axis=1)
-    tangents = np.nan_to_num(_unit(sums)).reshape(corners.shape)
+    tangents = np.nan_to_num(unit(sums)).reshape(corners.shape)
     signs = np.broadcast_to(np.where(mirrored, -1.0, 1.0)[:, None, None], (*corners.shape[:2], 1))
     return np.concatenate([tangents, signs], axis=2).astype(np.float32)
 
@@ -55,7 +56,7 @@ def _directions(corners: np.ndarray, uvs: np.ndarray) -> tuple[np.ndarray, np.nd
     (du1, dv1), (du2, dv2) = ((uvs[:, k] - uvs[:, 0]).T for k in (1, 2))
     p1, p2 = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     area = du1 * dv2 - du2 * dv1
-    return _unit((p1 * dv2[:, None] - p2 * dv1[:, None]) * np.sign(area)[:, None]), area < 0
+    return unit((p1 * dv2[:, None] - p2 * dv1[:, None]) * np.sign(area)[:, None]), area < 0
 
 
 def _groups(triangles: np.ndarray, normals: np.ndarray, uvs: np.ndarray, mirrored: np.ndarray) -> np.ndarray:
@@ -76,7 +77,3 @@ def _groups(triangles: np.ndarray, normals: np.ndarray, uvs: np.ndarray, mirrore
 
 def _flattened(vectors: np.ndarray, normals: np.ndarray) -> np.ndarray:
     return vectors - normals * (vectors * normals).sum(axis=-1, keepdims=True)
-
-
-def _unit(vectors: np.ndarray) -> np.ndarray:
-    return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)

@@ -145,7 +145,7 @@ class Binding:
             return normals
         frame, bends = basis.frame().astype(np.float32), self._bends[:, rows]
         added = np.stack([_dot([axis[k].take(of_run) for axis in frame], bends) for k in range(3)])
-        return _unit(normals + added, normals)
+        return _unit_columns(normals + added, normals)
 
     def _changes(self, mesh: TriangleMesh, chunk: slice, ellipse: _Ellipse) -> list[np.ndarray]:
         """Two (3, r) changes of the interpolated normals along the new half-axes of r runs."""
@@ -204,7 +204,7 @@ class _Basis:
 
     def frame(self) -> np.ndarray:
         """(3, 3, r) orthonormal axes: along the first edge, across it, the normal; 0 for degenerate triangles."""
-        x, z = _unit(self.columns[0]), _unit(self.columns[2])
+        x, z = _unit_columns(self.columns[0]), _unit_columns(self.columns[2])
         return np.stack([x, _cross(z, x), z])
 
 
@@ -230,7 +230,7 @@ class _Ellipse:
 
     def rotations(self, which: np.ndarray) -> np.ndarray:
         """(w, 4) unit quaternions of the ellipses that have a plane."""
-        x, z = _unit(self._long[:, which]), _unit(self._normal[:, which])
+        x, z = _unit_columns(self._long[:, which]), _unit_columns(self._normal[:, which])
         return axes_quaternions(x.T, _cross(z, x).T, z.T)
 
 
@@ -242,7 +242,7 @@ def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return np.stack([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 
 
-def _unit(vectors: np.ndarray, fallback: np.ndarray | float = 0.0) -> np.ndarray:
+def _unit_columns(vectors: np.ndarray, fallback: np.ndarray | float = 0.0) -> np.ndarray:
     """(3, n) unit vectors; the fallback for vectors without length."""
     length = np.sqrt(_dot(vectors, vectors))
     usable = (length > 0) & np.isfinite(length)
@@ -253,7 +253,7 @@ def _unit(vectors: np.ndarray, fallback: np.ndarray | float = 0.0) -> np.ndarray
 
 def _interpolated(mesh: TriangleMesh, basis: _Basis, triangles, place: np.ndarray, of_run: np.ndarray) -> np.ndarray:
     """(3, n) float32 unit shading normals at (2, n) coordinates; the triangle's own normal if the corners have none."""
-    own = _unit(basis.columns[2]).astype(np.float32)
+    own = _unit_columns(basis.columns[2]).astype(np.float32)
     if mesh.corner_normals is None:
         return own.take(of_run, axis=1)
     # clamped into the triangle, as for samples on its outline
@@ -262,7 +262,7 @@ def _interpolated(mesh: TriangleMesh, basis: _Basis, triangles, place: np.ndarra
     corners = _corner_normals(mesh, triangles)
     weights = 1 - second - third, second, third
     normals = np.stack([_dot([c[k].take(of_run) for c in corners], weights) for k in range(3)])
-    return _unit(normals, own.take(of_run, axis=1))
+    return _unit_columns(normals, own.take(of_run, axis=1))
 
 
 def _corner_normals(mesh: TriangleMesh, triangles: np.ndarray) -> np.ndarray:

@@ -12,7 +12,7 @@ from functools import partial
 
 import numpy as np
 
-from ..ldc.scan_conversion import expand
+from ...runs import expand
 from ..mesh.connectivity import twins
 from ..mesh.joining import have_same_values
 from ..mesh.triangle_mesh import TriangleMesh, corner_indices, corners_at, doubled_areas, triangle_chunks

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...runs import expand
 from ..ldc.grid import Grid
-from ..ldc.scan_conversion import expand
 from ..mesh.barycentric import barycentric
 from ..mesh.connectivity import triangle_parts, twins
 from ..mesh.triangle_mesh import TriangleMesh

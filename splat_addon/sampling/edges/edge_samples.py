@@ -12,6 +12,7 @@ from itertools import product
 import numpy as np
 
 from ...quaternions import axes_quaternions
+from ...runs import expand, ranges
 from ...surfels import Surfels, concatenate
 from ..materials.material_sampler import MaterialSampler, Samples
 from ..mesh.triangle_mesh import TriangleMesh, doubled_areas, gather_corners
@@ -52,8 +53,7 @@ def too_close(surfels: Surfels, edges: Surfels, distance: float) -> np.ndarray:
     for column in product((-1, 0, 1), repeat=2):  # of three cells that follow one another
         middle = around + column @ strides[:2]
         first, last = np.searchsorted(keys, middle - 1, "left"), np.searchsorted(keys, middle + 1, "right")
-        sample = np.repeat(np.arange(len(edges)), last - first)
-        number = order[np.arange(len(sample)) + np.repeat(last - np.cumsum(last - first), last - first)]
+        sample, number = np.repeat(np.arange(len(edges)), last - first), order[ranges(first, last - first)]
         is_near = np.linalg.norm(places[number] - samples[sample], axis=1) < distance
         is_same = np.einsum("nk,nk->n", normals[number], facing[sample]) > SAME_SIDE
         found[number[is_near & is_same]] = True
@@ -85,13 +85,12 @@ def edge_samples(
     triangles, number = transition_edges(near, far)
     if not len(triangles):
         raise ValueError("The two parts of the mesh have no edge in common.")
-    rows = np.arange(len(triangles))
     start, end = far.triangles[triangles, number], far.triangles[triangles, (number + 1) % 3]
     along = far.positions[end] - far.positions[start]
     length = np.linalg.norm(along, axis=1)
     counts = np.maximum(np.ceil(length / spacing), 1).astype(int)
-    edge = np.repeat(rows, counts)
-    place = (np.arange(len(edge)) - np.repeat(np.cumsum(counts) - counts, counts) + 0.5) / counts[edge]
+    edge, number_on_edge = expand(counts)
+    place = (number_on_edge + 0.5) / counts[edge]
     shares = np.zeros((len(edge), 3))
     at = np.arange(len(edge))
     shares[at, number[edge]], shares[at, (number[edge] + 1) % 3] = 1 - place, place

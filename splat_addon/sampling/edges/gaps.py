@@ -8,10 +8,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from ...runs import expand
 from ...surfels import LAYOUT
 from ..attributes.ellipses import ellipse_rotations, ellipse_scales
 from ..ldc.grid import Grid
-from ..ldc.scan_conversion import expand
 from ..materials.material_sampler import MaterialSampler, Samples
 from ..mesh.barycentric import barycentric
 from ..mesh.triangle_mesh import TriangleMesh

@@ -14,8 +14,9 @@ from itertools import product
 
 import numpy as np
 
+from ...runs import expand, steps
 from ..ldc.grid import BLOCK, Grid
-from ..ldc.scan_conversion import batches, expand, steps
+from ..ldc.scan_conversion import batches
 from .ordering import order_of, runs_of_equal
 
 #: Around the image, in cells: samples lie in it, other surfels and edges at most this far outside.

@@ -8,7 +8,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..ldc.scan_conversion import batches, expand
+from ...runs import expand
+from ..ldc.scan_conversion import batches
 from ..mesh.triangle_mesh import TriangleMesh
 from .ordering import order_of
 

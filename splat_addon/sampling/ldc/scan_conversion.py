@@ -82,20 +82,6 @@ def scan_convert(u: np.ndarray, v: np.ndarray, subcells: int, band: np.ndarray |
         )
 
 
-def expand(counts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """For runs of these lengths: the run of each element and its index within the run, both (sum of counts,) intp."""
-    owner = np.repeat(np.arange(len(counts)), counts)
-    return owner, steps(counts)
-
-
-def steps(counts: np.ndarray) -> np.ndarray:
-    """For runs of these lengths: the index of each element within its run, (sum of counts,) intp."""
-    before = np.cumsum(counts, dtype=np.intp) - counts
-    step = np.arange(before[-1] + counts[-1] if len(counts) else 0)
-    step -= np.repeat(before, counts)
-    return step
-
-
 def batches(counts: np.ndarray, limit: int) -> Iterator[slice]:
     """Slices of consecutive entries whose counts add up to at most `limit`; an entry above the limit gets its own
     slice."""

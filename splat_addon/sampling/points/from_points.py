@@ -12,6 +12,7 @@ import numpy as np
 from ...clip_lines import CLIP_FIELDS
 from ...quaternions import axes_quaternions
 from ...surfels import Surfels, empty_surfels
+from ...vectors import unit
 from ..options import DEFAULT_SPLAT_SIZE, check_crease_angle
 from ..progress import Progress, stage
 from .cells import spatial_order
@@ -173,7 +174,7 @@ def _number_clipped(fields: dict[str, np.ndarray], keep: np.ndarray) -> int:
 def _normals(given, positions, missing, nearest, viewpoint, progress) -> tuple[np.ndarray, int]:
     """(N, 3) float64 unit normals, and the number of connected parts that were oriented."""
     if not missing.any():
-        return _unit(given["normals"]), 0
+        return _unit_of_any_length(given["normals"]), 0
     normals = plane_normals(positions, nearest, stage(progress, *_STAGES["normals"]))
     signs, part = consistent_signs(positions, normals, nearest, stage(progress, *_STAGES["sides"]))
     normals *= signs[:, None]
@@ -186,7 +187,7 @@ def _normals(given, positions, missing, nearest, viewpoint, progress) -> tuple[n
         normals *= facing_scanners(positions, normals, given["scanners"] - _middle(given["positions"]))[:, None]
     if not missing.all():
         own = np.flatnonzero(~missing)
-        normals[own] = _unit(given["normals"][own])
+        normals[own] = _unit_of_any_length(given["normals"][own])
     return normals, int(part.max()) + 1
 
 
@@ -258,10 +259,9 @@ def _are_sizes(values: np.ndarray) -> np.ndarray:
     return np.isfinite(values) & (values > 0)
 
 
-def _unit(vectors: np.ndarray) -> np.ndarray:
+def _unit_of_any_length(vectors: np.ndarray) -> np.ndarray:
     # Divide by the largest component first: squares of very short or long vectors would leave float's range.
-    vectors = vectors / np.abs(vectors).max(axis=1, keepdims=True)
-    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
+    return unit(vectors / np.abs(vectors).max(axis=1, keepdims=True))
 
 
 def _checked(positions, normals, radii, colors, scanners) -> dict[str, np.ndarray | None]:

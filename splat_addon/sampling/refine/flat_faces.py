@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...vectors import unit
 from ..attributes.lifts import LEAST_LIFT, MOST_LIFT
 from ..edges.borders import Borders, EdgeSurvey
 from ..edges.ordering import grouped
@@ -75,7 +76,7 @@ def _are_even(mesh: TriangleMesh, triangles: np.ndarray, is_mapped: bool, bulges
     if bulges is not None:
         result &= MOST_LIFT * bulges.take(triangles, axis=1).max(axis=0) <= LEAST_LIFT * spacing
     if mesh.corner_normals is not None:
-        result &= _are_alike(_unit(mesh.corner_normals.take(triangles, axis=0)))
+        result &= _are_alike(_unit_or_none(mesh.corner_normals.take(triangles, axis=0)))
     if _reads_colors(mesh):
         result &= _are_alike(mesh.corner_colors.take(triangles, axis=0))
     return result
@@ -111,11 +112,9 @@ def _reads_colors(mesh: TriangleMesh) -> bool:
     return reads and mesh.corner_colors is not None
 
 
-def _unit(normals: np.ndarray) -> np.ndarray:
+def _unit_or_none(normals: np.ndarray) -> np.ndarray:
     """Unit vectors of (..., 3) normals. Those without length, 0 here, stand for the triangle's own normal."""
-    normals = normals.astype(np.float64)
-    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-        normals /= np.linalg.norm(normals, axis=-1, keepdims=True)
+    normals = unit(normals.astype(np.float64))
     return np.where(np.isfinite(normals).all(axis=-1, keepdims=True), normals, 0)
 
 
@@ -151,7 +150,7 @@ def _look_alike(mesh: TriangleMesh, normals: np.ndarray, one: np.ndarray, other:
         result &= mesh.materials.take(one) == mesh.materials.take(other)
     if mesh.corner_normals is not None:
         firsts = mesh.corner_normals[:, 0]
-        result &= _are_alike(np.stack([_unit(firsts.take(each, axis=0)) for each in (one, other)], axis=1))
+        result &= _are_alike(np.stack([_unit_or_none(firsts.take(each, axis=0)) for each in (one, other)], axis=1))
     if _reads_colors(mesh):
         firsts = mesh.corner_colors[:, 0]
         result &= _are_alike(np.stack([firsts.take(each, axis=0) for each in (one, other)], axis=1))

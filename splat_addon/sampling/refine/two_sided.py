@@ -14,10 +14,11 @@ from typing import NamedTuple
 import numpy as np
 
 from ...quaternions import axes_columns
+from ...runs import expand
 from ..attributes.ellipses import MAX_STRETCH
 from ..edges.ordering import order_of
 from ..ldc.depth_cube import rows_of
-from ..ldc.scan_conversion import Spans, batches, expand
+from ..ldc.scan_conversion import Spans, batches
 from ..mesh.connectivity import triangle_parts, twins
 from ..mesh.survey import boundary_weights
 from ..mesh.triangle_mesh import TriangleMesh, corner_indices, doubled_areas, gather_corners
@@ -121,7 +122,7 @@ def _have_other_sides(
         for band in _bands(runs.spans):
             numbers, triangles, distances = _neighbours(runs.take(band))
             corners = (gather_corners(components, mesh.triangles[of]) for of in triangles)
-            below, above = (_unit(doubled_areas(of)) for of in corners)
+            below, above = (_unit_columns(doubled_areas(of)) for of in corners)
             behind = -distances * below[axis]
             are_close = (behind > -_CROSSED) & (behind < _REACH) & ((below * above).sum(axis=0) < _OPPOSITE)
             if of_part is not None:
@@ -138,7 +139,7 @@ def _closed_parts(mesh: TriangleMesh) -> np.ndarray:
     return np.where(boundaries.take(parts) == 0, parts, -1)
 
 
-def _unit(vectors: np.ndarray) -> np.ndarray:
+def _unit_columns(vectors: np.ndarray) -> np.ndarray:
     return vectors / np.sqrt((vectors * vectors).sum(axis=0))
 
 
