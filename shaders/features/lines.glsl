@@ -17,7 +17,7 @@ void lines_cover(vec4 own, ivec2 texel, inout float covered) {
   covered = max(covered, clamp((1.0 - abs(dot(own.xyz, ray)) / frame.line_shallow) / SOFT, 0.0, 1.0));
 }
 
-#part shaded_sample
+#part shaded_sample, one_color
 void lines_finish(inout Shaded s) {
   s.color = mix(s.color, frame.line_color.rgb, texelFetch(lines, s.texel, 0).r);
 }

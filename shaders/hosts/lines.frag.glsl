@@ -3,7 +3,8 @@
 // Summary: the share of a sample that a line covers. Eight walks start from it over its own surface. Where one reaches
 //          the background or a drop in depth, there is a silhouette; where the normal changes between two opposite
 //          walks, and most of that within a few pixels, there is a crease, in the middle of the change. Hooks: `see`,
-//          whether a surface is visible; `cover`, what other lines cover.
+//          whether a surface is visible; `widen`, how wide its line is; `meet`, what it meets; `cover`, what other lines
+//          cover.
 
 #include "hosts/mean_surface.glsl"
 
@@ -68,6 +69,7 @@ Walk walk(ivec2 texel, vec4 start, ivec2 along, float reach) {
       result.normal = sight_at(texel + result.steps * along).xyz;
       break;
     }
+    #hook meet(at, (float(k) - 0.5) * stride)
     result.steps = k;
     result.normal = next.xyz;
     here = next;
@@ -117,7 +119,9 @@ void main() {
     lines = mean_surface(texel, 0).coverage > 0.0 ? 1.0 : 0.0;
     return;
   }
-  float width = frame.line_width, beside = 0.5 * width + float(SAMPLES);
+  float width = frame.line_width;
+  #hook widen(texel, width)
+  float beside = 0.5 * width + float(SAMPLES);
   float reach = 2.0 * beside + TURN_REACH;
   float silhouette = 1e9, crease = 1e9;
   ivec2 ways[4] = ivec2[4](ivec2(1, 0), ivec2(0, 1), ivec2(1, 1), ivec2(1, -1));

@@ -1,6 +1,6 @@
 // References: Botsch et al. 2005, section 4 (normalise, then light once).
 // Summary: turns a sample's sums into a lit surface; the includer has included a shading model. Hooks: `prepare` before
-//          lighting, `outputs`, `finish`.
+//          lighting, `restyle` after it, `outputs`, `finish`.
 
 #include "hosts/outputs.glsl"
 #include "hosts/mean_surface.glsl"
@@ -28,6 +28,7 @@ Shaded shaded_sample(MeanSurface mean, ivec2 texel, int tap) {
   Shaded s = Shaded(mean, texel, tap, normal, frame.material.xyz, vec3(0.0), mean.coverage, NO_OUTPUTS);
   #hook prepare(s)
   s.color = lit(s, position);
+  #hook restyle(s, position)
   s.outputs.diffuse_color = mean.color;
   #hook outputs(s)
   s.color += s.outputs.emission;

@@ -11,7 +11,17 @@ from .plan.build import plan
 from .plan.frame_plan import FramePlan
 from .presets import PRESETS, SCAN_LOOK, Preset
 from .renderer import RenderCancelled, Renderer, Shown
-from .scene import Finish, Instance, Material, NormalTexture, PolygonInstance, Scene, SurfaceTexture
+from .scene import (
+    Finish,
+    Instance,
+    LineStyle,
+    Material,
+    NormalTexture,
+    PolygonInstance,
+    Scene,
+    Style,
+    SurfaceTexture,
+)
 from .scene.camera import Camera, look_at
 from .scene.environment import Environment
 from .scene.eye_dome import EyeDome
@@ -45,6 +55,7 @@ __all__ = (
     "Instance",
     "Lens",
     "Light",
+    "LineStyle",
     "Lines",
     "Matcap",
     "Material",
@@ -61,6 +72,7 @@ __all__ = (
     "Scene",
     "Settings",
     "Shown",
+    "Style",
     "SurfaceTexture",
     "look_at",
     "make_polygons",

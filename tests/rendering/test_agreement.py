@@ -26,12 +26,15 @@ from splat_addon.rendering import (
     Lens,
     Light,
     Lines,
+    LineStyle,
     Matcap,
     Material,
     NormalTexture,
     Panorama,
     PolygonInstance,
+    Ramp,
     Settings,
+    Style,
     SurfaceTexture,
     look_at,
     plan,
@@ -305,6 +308,19 @@ def crowded(scene, camera):
     return replace(scene, lights=lights, surfels=made[Instance], polygons=made[PolygonInstance]), camera
 
 
+def with_styles(scene, camera):
+    """A scene whose materials have ramps, lines and groups of their own, in turn."""
+    ramps = (Ramp(np.array([(0.1, 0.0, 0.3), (1.0, 0.9, 0.7)])), None)
+    styles = [Style(ramp, line, group) for line in (LineStyle(3.0), None) for ramp in ramps for group in (0, 1)]
+
+    def styled(placed, number):
+        materials = (replace(m, style=styles[(number + k) % 8]) for k, m in enumerate(placed.materials))
+        return replace(placed, materials=tuple(materials))
+
+    surfels, polygons = ([styled(p, k) for k, p in enumerate(of)] for of in (scene.surfels, scene.polygons))
+    return replace(scene, surfels=tuple(surfels), polygons=tuple(polygons)), camera
+
+
 #: tests/rendering/test_polygons.py compares them with the truth.
 HYBRID = {
     "many_finishes": lambda: of_many_finishes(*scenes.polygons(count=COUNT, size=SIZE)),
@@ -336,9 +352,10 @@ def mirrored(scene, camera):
     return replace(scene, polygons=placed, world=(0.3, 0.4, 0.5)), camera
 
 
-#: tests/rendering/test_sun_apart.py, test_sides.py and test_terminators.py have facts about them.
+#: tests/rendering/test_sun_apart.py, test_sides.py, test_terminators.py and test_styles.py have facts about them.
 SPECIAL = {
     "sun_apart": lambda: with_its_sun_apart(*scenes.torus(count=COUNT, size=SIZE)),
+    "styles": lambda: with_styles(*scenes.polygons(count=COUNT, size=SIZE)),
     "nothing": lambda: of_nothing(*scenes.torus(count=100, size=SIZE)),
     "cards": lambda: with_cards(*scenes.torus(count=COUNT, size=SIZE)),
     "mirrored": lambda: mirrored(*scenes.polygons(count=COUNT, size=SIZE)),
@@ -357,6 +374,8 @@ CASES = [
     ("torus", "quad", {"shading": "captured", "ambient_occlusion": 1.0}),
     *(("shadows", "quad", {"shading": shading}) for shading in ("phong", "toon", "ramp")),
     ("torus", "mip", {"shading": "flat", "lines": Lines(width=2.0)}),
+    ("styles", "mip", {"lines": Lines(width=2.0)}),
+    ("styles", "quad", {"lights_splats": True}),
     ("solid_sphere", "quad", {"shading": "flat", "lines": Lines(shallow_angle=0.4)}),
     ("light_linking", "quad", {}),
     ("torus", "quad", {"shading": "flat", "as_printed": True, "edge_threshold": 0.5}),

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..passes.decisions import model_in, nearest_state, shadows, splat_lighting
 from ..passes.drawing import draw_polygons
-from ..passes.sums import are_linked, differ, material_texels, summed_finishes
+from ..passes.sums import are_linked, differ, material_texels, styles, summed_finishes
 from ..plan.graph import Part, Pass, Texture
 from ..plan.hosts import LIT_HOSTS, Host, Kind
 
@@ -25,6 +25,7 @@ NORMAL = Texture("polygon_normal", is_multisampled=True)
 MATERIAL = Texture("polygon_material", is_multisampled=True)
 EMISSION = Texture("polygon_emission", is_multisampled=True)
 FINISH = Texture("polygon_finish", is_multisampled=True)
+STYLE = Texture("polygon_style", is_multisampled=True)
 PLANE = Texture("polygon_plane", is_multisampled=True)
 DEPTH = Texture("polygon_depth", "DEPTH32F", is_multisampled=True)
 
@@ -57,6 +58,8 @@ def parts(planning, p):
         yield from _drawn(planning, model_in(planning, p))
     if p.kind == Kind.OPAQUE and p.host == Host.LINES:
         yield from joined(planning)
+        if planning.find(styles):
+            yield Part("styles", reads=(STYLE,))
     if p.kind == Kind.OPAQUE and p.host in LIT_HOSTS:
         # The paper blends what it has lit, by its own words a little worse than attributes.
         apart = planning.settings.as_printed and not planning.find(splat_lighting).is_wanted
@@ -69,6 +72,8 @@ def parts(planning, p):
             yield Part("emission", reads=(EMISSION,))
         if summed_finishes(planning, model):
             yield Part("finish", reads=(FINISH,))
+        if planning.find(styles):
+            yield Part("styles", reads=(STYLE,))
         if planning.find(shadows).maps:
             yield Part("polygon_plane", reads=(PLANE,))
 
@@ -94,6 +99,8 @@ def _drawn(planning, model):
         yield Part("emission", ("gbuffer_emission",), writes=(EMISSION,), varyings=varyings, **drawn)
     if summed_finishes(planning, model):
         yield Part("finish", writes=(FINISH,), varyings=(("smooth", "vec4", "finish"),), **drawn)
+    if planning.find(styles):
+        yield Part("styles", writes=(STYLE,), varyings=(("smooth", "vec4", "style"),), **drawn)
     if planning.find(shadows).maps:
         names = ("flat", "triangle_plane"), ("flat", "triangle_bulge"), ("smooth", "triangle_place")
         varyings = tuple((how, "vec3", name) for how, name in names)

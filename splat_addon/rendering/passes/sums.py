@@ -5,12 +5,15 @@ a few textures, so that some share one."""
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import replace
 from typing import NamedTuple
 
 from ..plan.graph import Part, Texture
 from ..plan.hosts import BLENDED, Kind
 from ..plan.planning import Planning, any_of
-from ..scene import Finish, Material
+from ..scene import Finish, Material, Style
+from ..scene.lines import Lines
+from ..scene.style import AS_THE_PICTURE
 from ..scene.table import Kinds
 from ..shading_models import ShadingModel
 from ..upload.packing import MAX_FINISHES, shared_emission, shared_material
@@ -91,7 +94,7 @@ def finishes(planning: Planning) -> tuple[Finish, ...]:
     """The finishes that the frame tells apart, the most common first; none if all are plain."""
     kept = tuple(finish for finish, _ in planning.scene.table.kinds.find(counted_finishes).most_common(MAX_FINISHES))
     has_any = any(finish.layers for finish in kept)
-    return kept if has_any and (len(kept) == 1 or _has_room(planning)) else ()
+    return kept if has_any and (len(kept) == 1 or _has_room(planning, bool(planning.find(styles)))) else ()
 
 
 def counted_finishes(kinds: Kinds) -> Counter[Finish]:
@@ -103,12 +106,14 @@ def counted_finishes(kinds: Kinds) -> Counter[Finish]:
     return counted
 
 
-def _has_room(planning: Planning) -> bool:
-    """Whether the other sums of a frame leave room for one more."""
+def _has_room(planning: Planning, has_style: bool) -> bool:
+    """Whether the other sums of a frame leave room for one more. has_style: whether styles are among those."""
     has_layers = any_of(lambda instance: instance.is_transparent, planning.surfels)
     kinds = BLENDED if has_layers else (Kind.OPAQUE,)
     model = planning.model
-    sums = 2 + any(depths_are_apart(planning, kind) for kind in kinds) + sum(differ(planning, model))
+    sums = 2 + any(depths_are_apart(planning, kind) for kind in kinds) + sum(differ(planning, model)) + has_style
+    if has_style and planning.scene.polygons and bool(planning.find(shadows).maps) + sums >= MAX_COLORS:
+        return False  # polygons have planes beside these
     return sums + are_linked(planning, model) + counts_splats(planning) < MAX_COLORS
 
 
@@ -118,21 +123,51 @@ def summed_finishes(planning: Planning, model: ShadingModel) -> tuple[Finish, ..
     return kept if len(kept) > 1 else ()
 
 
+def asked_styles(planning: Planning) -> tuple[Style, ...]:
+    """The styles of all materials, after that of the picture; none if they are all as the picture."""
+    kinds = planning.scene.table.kinds
+    found = dict.fromkeys((AS_THE_PICTURE, *(m.style for placed, _ in kinds for m in placed.materials)))
+    return tuple(found) if len(found) > 1 else ()
+
+
+def styles(planning: Planning) -> tuple[Style, ...]:
+    """Those that the frame tells apart."""
+    asked = planning.find(asked_styles) if planning.shown else ()
+    return asked if asked and len(asked) <= MAX_STYLES and _has_room(planning, False) else ()
+
+
+#: Styles that a picture tells apart: 32-bit sums of their moments are exact enough for so many.
+MAX_STYLES = 512
+
+
+def drawn_lines(planning: Planning) -> Lines | None:
+    """The lines of the picture, as wide as the widest of a style; None for none."""
+    widths = [style.line.width for style in planning.find(styles) if style.line is not None]
+    lines = planning.settings.lines
+    widest = max(widths, default=0.0)
+    if lines is None:
+        return Lines(width=widest) if widest > 0 else None
+    return replace(lines, width=max(widest, lines.width))
+
+
 class MaterialTexels(NamedTuple):
-    """What materials have beside the first of their texels: whether they have emissions, and the finishes that are told
-    apart, if there are several."""
+    """What materials have beside the first of their texels: whether they have emissions, the finishes that are told
+    apart, if there are several, and the styles."""
 
     have_emissions: bool
     finishes: tuple[Finish, ...]
+    styles: tuple[Style, ...]
 
     @property
     def constants(self) -> tuple[tuple[str, int], ...]:
-        """The number of texels per material, and the one of its finish, if there is one: the last."""
-        count = 1 + self.have_emissions + bool(self.finishes)
-        return ("TEXELS_PER_MATERIAL", count), *((("FINISH_TEXEL", count - 1),) if self.finishes else ())
+        """The number of texels per material, and those of its finish and its style, if there are any: the last."""
+        first = 1 + self.have_emissions
+        named = [n for n, has in (("FINISH_TEXEL", self.finishes), ("STYLE_TEXEL", self.styles)) if has]
+        texels = ((name, first + k) for k, name in enumerate(named))
+        return ("TEXELS_PER_MATERIAL", first + len(named)), *texels
 
 
 def material_texels(planning: Planning) -> MaterialTexels:
     """How materials are stored, of all passes alike."""
     model = planning.model
-    return MaterialTexels(differ(planning, model).emissions, summed_finishes(planning, model))
+    return MaterialTexels(differ(planning, model).emissions, summed_finishes(planning, model), planning.find(styles))

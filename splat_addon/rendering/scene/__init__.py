@@ -4,15 +4,18 @@
 from .finish import Finish
 from .material import Material, NormalTexture, SurfaceTexture
 from .scene import Instance, Placed, PolygonInstance, Scene, placed_at
+from .style import LineStyle, Style
 
 __all__ = (
     "Finish",
     "Instance",
+    "LineStyle",
     "Material",
     "NormalTexture",
     "Placed",
     "PolygonInstance",
     "Scene",
+    "Style",
     "SurfaceTexture",
     "placed_at",
 )

@@ -11,6 +11,7 @@ import numpy as np
 from ...images import Image
 from .finish import PLAIN, Finish
 from .numbers import MAX_FACTOR, MAX_INDEX, check_radiance, check_range
+from .style import AS_THE_PICTURE, Style
 
 
 def reflectance(ior: float) -> float:
@@ -24,7 +25,8 @@ class Material:
 
     roughness, metallic: 0 to 1. ior: index of refraction of the dielectric coat, which sets its reflectance at normal
         incidence, ((ior - 1) / (ior + 1))^2. emission: scene-linear radiance, the same in all directions.
-    index: what the frame's `material_index` shows of it. finish: what `principled` shading adds to it.
+    index: what the frame's `material_index` shows of it. finish: what `principled` shading adds to it. style: its own
+        toon shading and lines.
     Surfels may have their own roughness, metallic and emission, which take the place of these.
     """
 
@@ -34,6 +36,7 @@ class Material:
     emission: tuple[float, float, float] = (0.0, 0.0, 0.0)
     index: int = 0
     finish: Finish = PLAIN
+    style: Style = AS_THE_PICTURE
 
     def __post_init__(self):
         check_range("A material's roughness and metallic", (self.roughness, self.metallic), 0.0, 1.0)

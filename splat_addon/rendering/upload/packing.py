@@ -16,7 +16,7 @@ from ...large_surfels import BLEND_STEPS, steps_of
 from ...normal_fields import NORMAL_FIELDS
 from ...quaternions import quaternion_axes
 from ...surfels import HIDDEN, OPAQUE, Surfels
-from ..scene import Finish, Material, Placed
+from ..scene import Finish, Material, Placed, Style
 from ..scene.material import reflectance
 from .stored_order import SPLATS_PER_ROW
 
@@ -126,18 +126,24 @@ def octahedral(normals: np.ndarray) -> np.ndarray:
 
 
 def pack_materials(
-    materials: tuple[Material, ...], with_emission: bool = False, finishes: tuple[Finish, ...] = ()
+    materials: tuple[Material, ...],
+    with_emission: bool = False,
+    finishes: tuple[Finish, ...] = (),
+    styles: tuple[Style, ...] = (),
 ) -> np.ndarray:
     """(1, M, 4) float32: roughness, metallic, reflectance at normal incidence, 0.
 
-    with_emission: another texel each, (1, 2 M, 4): r, g, b of the emission, 0. finishes: if there are any, a last texel
-    each, with the share of each of them but the first.
+    with_emission: another texel each, (1, 2 M, 4): r, g, b of the emission, 0. finishes: if there are any, another
+    texel each, with the share of each of them but the first. styles: if there are any, a last texel each, with the
+    moments of its number.
     """
     texels = [[(m.roughness, m.metallic, reflectance(m.ior), 0) for m in materials]]
     if with_emission:
         texels.append([(*m.emission, 0) for m in materials])
     if finishes:
         texels.append([finish_shares(m.finish, finishes) for m in materials])
+    if styles:
+        texels.append([style_moments(m.style, styles) for m in materials])
     return np.array(texels, np.float32).transpose(1, 0, 2).reshape(1, -1, 4)
 
 
@@ -151,6 +157,16 @@ def finish_shares(finish: Finish, finishes: tuple[Finish, ...]) -> np.ndarray:
     return np.eye(MAX_FINISHES)[np.argmin(distance), 1:]
 
 
+def style_moments(style: Style, styles: tuple[Style, ...]) -> tuple[float, ...]:
+    """The first three powers of a number from -1 to 1 for one of `styles`, the first if it is not among them, and 1.
+
+    From their mean over two styles follow both, and their shares: shaders/lib/style_mix.glsl.
+    """
+    number = styles.index(style) if style in styles else 0
+    at = 2 * number / (len(styles) - 1) - 1
+    return at, at**2, at**3, 1.0
+
+
 def finish_matrix(finish: Finish) -> np.ndarray:
     """(4, 4) float64 matrix with four of the finish's numbers in each column."""
     return np.reshape(finish.numbers, (4, 4)).T
@@ -162,12 +178,13 @@ def pack_own_materials(
     order=slice(None),
     with_emission: bool = False,
     finishes: tuple[Finish, ...] = (),
+    styles: tuple[Style, ...] = (),
 ) -> np.ndarray:
     """(rows, 512 T, 4) float32, T texels each: as `pack_materials`, but one per surfel, and 1 at the end of its first.
 
     Values that surfels lack come from their slot. order: storage order of the surfels.
     """
-    slots = pack_materials(materials, with_emission, finishes).reshape(len(materials), -1, 4)
+    slots = pack_materials(materials, with_emission, finishes, styles).reshape(len(materials), -1, 4)
     chosen = surfels.materials[order]
     rows, count = row_count(len(chosen)), len(chosen)
     texels = np.zeros((rows * SPLATS_PER_ROW, *slots.shape[1:]), np.float32)

@@ -92,10 +92,10 @@ class Pool:
             self._textures[name,] = self._upload(texels, form)
         return self._textures[sampler,]
 
-    def _materials(self, with_emission: bool, finishes: tuple) -> np.ndarray:
+    def _materials(self, *about) -> np.ndarray:
         """One texel or more of each splat or corner: slots are those of all objects."""
         numbered = replace(self._joined, materials=self._slot_of.astype(np.int32))
-        return pack_own_materials(numbered, self._slots, self._order, with_emission, finishes)
+        return pack_own_materials(numbered, self._slots, self._order, *about)
 
 
 #: Fields of polygons that a pool has.

@@ -16,7 +16,7 @@ from ...surfels import Surfels
 from ..detail.hierarchies import built_hierarchy, hierarchy_before, hierarchy_of, keep_hierarchy, make_hierarchy
 from ..device import Device
 from ..device.interface import Pipeline, PipelineDescription, Texture
-from ..scene import Finish, Placed, SurfaceTexture
+from ..scene import Placed, SurfaceTexture
 from ..scene.polygons import Polygons, pack_polygon_bumps, pack_polygon_uvs, pack_polygons
 from .atlas import FORMAT, make_atlas
 from .cuts import Cuts
@@ -100,26 +100,24 @@ class Resources:
     def materials(
         self,
         instance: Placed,
-        with_emission: bool,
-        finishes: tuple[Finish, ...],
+        about: tuple,
         levels: Hierarchy | None = None,
         part: int = 0,
     ) -> Texture:
         """The materials of an instance's slots; if surfels or corners have their own, one each, of one part of them.
         Uploaded once.
 
-        with_emission, finishes: as in `pack_materials`.
+        about: what `pack_materials` takes beside them.
         """
         shape, slots = instance.shape, instance.materials
         if not shape.has_own_material:
-            return self.data(pack_materials(slots, with_emission, finishes))
+            return self.data(pack_materials(slots, *about))
 
         if not isinstance(shape, Surfels):
-            made_from = slots, with_emission, finishes
-            own = partial(pack_own_materials, shape, slots, slice(None), with_emission, finishes)
-            return self._once(shape, "materials", made_from, lambda: self.data(own()))
-        pack = partial(_packed_materials, slots, with_emission, finishes)
-        return self._with_levels(shape, "materials", (slots, with_emission, finishes), levels, pack)[part]
+            own = partial(pack_own_materials, shape, slots, slice(None), *about)
+            return self._once(shape, "materials", (slots, *about), lambda: self.data(own()))
+        pack = partial(_packed_materials, slots, about)
+        return self._with_levels(shape, "materials", (slots, *about), levels, pack)[part]
 
     def surfel_uvs(self, surfels: Surfels, levels: Hierarchy | None = None, part: int = 0) -> Texture:
         """The texture coordinates of one part of them, uploaded once."""
@@ -293,9 +291,9 @@ def _packed_surfels(storage: Storage, surfels: Surfels, levels: Hierarchy | None
     return Packed(texels, stored)
 
 
-def _packed_materials(slots, with_emission: bool, finishes, surfels: Surfels, levels, order: np.ndarray) -> Packed:
+def _packed_materials(slots, about: tuple, surfels: Surfels, levels, order: np.ndarray) -> Packed:
     parts = stored_parts(surfels, levels, order)
-    return _packed((pack_own_materials(some, slots, own, with_emission, finishes) for some, own in parts), "RGBA32F")
+    return _packed((pack_own_materials(some, slots, own, *about) for some, own in parts), "RGBA32F")
 
 
 def _packed_uvs(surfels: Surfels, levels: Hierarchy | None, order: np.ndarray) -> Packed:
