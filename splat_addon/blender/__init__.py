@@ -4,7 +4,17 @@
 
 from __future__ import annotations
 
-from . import commands, manual, mesh_sampling_settings, operators, overrides, preferences, properties, translations
+from . import (
+    commands,
+    manual,
+    mesh_sampling_settings,
+    operators,
+    overrides,
+    preferences,
+    properties,
+    style_properties,
+    translations,
+)
 from .conversion import (
     bring_back,
     colour_watch,
@@ -25,6 +35,7 @@ from .ui import (
     render_panels,
     report_panel,
     sidebar,
+    style_panels,
     view_layer_panels,
     world_panels,
 )
@@ -44,6 +55,8 @@ MODULES = (
     object_panels,
     view_layer_panels,
     world_panels,
+    style_properties,
+    style_panels,
     mesh_sampling_settings,
     mesh_settings,
     points_settings,

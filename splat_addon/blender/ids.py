@@ -71,6 +71,9 @@ RENDER_SETTINGS = "surfel_splatting"
 #: Passes that only this engine has: `view_layer.surfel_splatting`.
 LAYER_SETTINGS = "surfel_splatting"
 
+#: A material's toon shading and lines: `material.surfel_splatting`.
+MATERIAL_SETTINGS = "surfel_splatting"
+
 #: An object's render settings: `object.surfel_splatting`.
 OBJECT_SETTINGS = "surfel_splatting"
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import bpy
-from bpy.props import EnumProperty, FloatProperty, StringProperty
+from bpy.props import EnumProperty, FloatProperty, PointerProperty, StringProperty
 
 from .density_properties import (
     DENSITIES,
@@ -22,6 +22,7 @@ from .geometry.sources import asked_of
 from .ids import OBJECT_SETTINGS, RENDER_SETTINGS
 from .registration import OVERRIDABLE, with_property
 from .scan_color_settings import ScanColorProperties
+from .style_properties import SurfelObjectStyle
 
 #: density -> the property of `MeshSamplingProperties` that holds its number, and the kind of density.
 NUMBERED = {
@@ -178,6 +179,7 @@ class SurfelObjectSettings(ScanColorProperties, bpy.types.PropertyGroup):
         update=_read_again,
         override=OVERRIDABLE,
     )
+    style: PointerProperty(name="Style", type=SurfelObjectStyle, override=OVERRIDABLE)
     detail: FloatProperty(
         name="Object Detail",
         description=(
@@ -247,4 +249,4 @@ def form_of(entry: bpy.types.DepsgraphObjectInstance, scene: bpy.types.Scene) ->
     return Form(kind, **{name: getattr(settings, name)} if name else {})
 
 
-register, unregister = with_property(bpy.types.Object, OBJECT_SETTINGS, SurfelObjectSettings)
+register, unregister = with_property(bpy.types.Object, OBJECT_SETTINGS, SurfelObjectSettings, SurfelObjectStyle)

@@ -130,6 +130,14 @@ class SurfelSplattingSettings(MeshSamplingProperties, bpy.types.PropertyGroup):
         soft_max=math.radians(45),
         default=Lines.shallow_angle,
     )
+    lines_meet: BoolProperty(
+        name="Where Objects Meet",
+        description=(
+            "Also draw lines where surfaces of different objects cut through each other or lie in one plane. Frames "
+            "take longer"
+        ),
+        default=False,
+    )
     line_depth_threshold: FloatProperty(
         name="Depth Threshold",
         description="How much deeper the next surface must lie for a silhouette, in pixels at that distance",

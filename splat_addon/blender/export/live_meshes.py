@@ -52,6 +52,7 @@ from . import passed_over
 from .holdouts import held_slots, with_holes
 from .object_detail import finer
 from .shading import shading_material
+from .styles import OF_MATERIALS, ObjectStyle
 
 #: A sampling is kept until it is coarser or finer than requested by more than this factor.
 _TOO_COARSE, _TOO_FINE = 1.26, 2.5
@@ -62,11 +63,12 @@ _UNSEEN_RESOLUTION = 64
 
 class Manner(NamedTuple):
     """What is the same at many places of a mesh. fields: of its instances, by name. form: how it is rendered, see
-    `form_of`. detail: of its object."""
+    `form_of`. detail: of its object. style: what replaces that of its materials."""
 
     fields: dict
     form: Form
     detail: float
+    style: ObjectStyle = OF_MATERIALS
 
 
 class Place(NamedTuple):
@@ -168,7 +170,8 @@ class LiveMesh:
         parts, which, matrices = {}, [], []
         for matrix, manner in places:
             if id(manner) not in parts:
-                common = {"materials": self.materials, "split_distance": manner.form.split_distance} | manner.fields
+                materials = manner.style.on(self.materials)
+                common = {"materials": materials, "split_distance": manner.form.split_distance} | manner.fields
                 parts[id(manner)] = [(part, manner) for part in with_holes(made(**common), self.held)]
             for part in parts[id(manner)]:
                 which.append(part)

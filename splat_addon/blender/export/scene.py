@@ -51,6 +51,7 @@ from .object_detail import detail_of
 from .scan_colors import Column, painter
 from .shading import light_of, shading_material
 from .streams import Streams, not_followed
+from .styles import style_of
 from .world import WorldStore
 
 
@@ -330,7 +331,7 @@ class _Things:
         form = form_of(entry, self._depsgraph.scene) if "faces" in what else _NO_FORM
         if form.kind != "HIDDEN" and not any(is_stood_in(each, self._stood_in) for each in asked_of(entry)):
             kind.mesh = self._live_meshes.of(object_, owner, form, self._override)
-            kind.manner = Manner(fields, form, detail_of(owner))
+            kind.manner = Manner(fields, form, detail_of(owner), style_of(object_.original, self._depsgraph.scene))
         if "points" in what:
             notes.add(_BARE_POINTS)
 
@@ -466,13 +467,14 @@ def _instances(object_, kept, depsgraph, fields: dict, store: SurfelStore, notes
     for sentence in passed_over.of_object(object_.original):
         notes.add(sentence)
     if override is not None:
-        materials = (shading_material(override, notes),)
+        materials = style_of(object_.original, depsgraph.scene).on((shading_material(override, notes),))
         painted = overridden(surfels, override, store.derived, notes)
         return with_holes(Instance(painted, materials=materials, **fields), held_slots([override]))
     if paint is not None:
         surfels = paint(surfels, notes=notes)
     own = surfels.arrays().keys()
     materials = tuple(shading_material(material, notes, own) for material in slots)
+    materials = style_of(object_.original, depsgraph.scene).on(materials)
     textures = tuple(store.textures.get(material, notes) for material in slots) if surfels.has_uvs else ()
     return with_holes(Instance(surfels, materials=materials, textures=textures, **fields), held_slots(slots))
 

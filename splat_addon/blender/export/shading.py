@@ -20,6 +20,7 @@ from ..materials.socket_ranges import is_radiance
 from ..materials.surface_shaders import CLEAR, Part, Shader, is_holdout, parts, surface_shader, why_unseen
 from ..materials.texture_images import odd_pixels_sentence
 from . import passed_over
+from .styles import style_of_material
 
 #: Blender's light type -> its emitting area, by which the energy of a non-normalised light is multiplied, as in Cycles:
 #: the area of a sun's disc at distance 1 or of a point light's sphere, or 4 for a light without size.
@@ -115,6 +116,12 @@ def finite_radiance(radiance: tuple[float, float, float], owner: str, notes) -> 
 
 
 def shading_material(material: bpy.types.Material | None, notes, own: Collection[str] = ()) -> Material:
+    """The material with its style, see `_plain_material`."""
+    made = _plain_material(material, notes, own)
+    return made if material is None else replace(made, style=style_of_material(material))
+
+
+def _plain_material(material: bpy.types.Material | None, notes, own: Collection[str]) -> Material:
     """The reflectance and emission of the shader at the material's output; the default material if there is none.
 
     own: fields that the surfels have themselves, so that missing textures for them are not reported.

@@ -6,6 +6,8 @@ That is the ramp of a texture, because Blender offers add-ons no ramp of their o
 
 from __future__ import annotations
 
+from weakref import WeakValueDictionary
+
 import bpy
 import numpy as np
 
@@ -15,7 +17,16 @@ from ..working_space import luminance
 #: Places at which it is read; more than a curve in the interface has pixels.
 PLACES = 256
 
-_kept = Settings.ramp
+#: Contents -> the ramp that has them: the same object for the same colours, so that a view can refine.
+_known: WeakValueDictionary[tuple, Ramp] = WeakValueDictionary()
+
+
+def kept_ramp(colors: np.ndarray, weights: tuple[float, float, float] | None = None) -> Ramp:
+    """The ramp of (n, 3) colours. weights: of the luminance that it is looked up by; None: of the working space."""
+    weights = tuple(luminance()[:3] if weights is None else weights)
+    colors = np.ascontiguousarray(colors, np.float32)
+    made = Ramp(colors, weights)
+    return _known.setdefault((colors.tobytes(), weights), made)
 
 
 def table(ramp: bpy.types.ColorRamp) -> np.ndarray:
@@ -24,14 +35,7 @@ def table(ramp: bpy.types.ColorRamp) -> np.ndarray:
 
 
 def ramp_of(texture: bpy.types.Texture | None) -> Ramp:
-    """The ramp of a texture; three even steps without a texture or if its ramp is switched off.
-
-    Until the colours change it is the same object, so that a view can refine.
-    """
-    global _kept
+    """The ramp of a texture; three even steps without a texture or if its ramp is switched off."""
     has_ramp = texture is not None and texture.use_color_ramp
     colors = table(texture.color_ramp)[:, :3].clip(0) if has_ramp else Settings.ramp.colors
-    weights = luminance()[:3]
-    if weights != _kept.luminance or not np.array_equal(_kept.colors, colors):
-        _kept = Ramp(colors, weights)
-    return _kept
+    return kept_ramp(colors)

@@ -4,6 +4,39 @@
 from __future__ import annotations
 
 GERMAN = {
+    (
+        "Also draw lines where surfaces of different objects cut through each other or lie in one plane. Frames "
+        "take longer"
+    ): (
+        "Linien auch dort zeichnen, wo sich Flächen verschiedener Objekte durchdringen oder in einer Ebene "
+        "liegen. Bilder dauern länger"
+    ),
+    "Draw lines of a width and a color of their own": "Linien in eigener Breite und Farbe zeichnen",
+    "Draw no lines": "Keine Linien zeichnen",
+    "Draw the lines that its materials say": "Die Linien zeichnen, die seine Materialien angeben",
+    "Draw the lines that the render properties say": "Die Linien zeichnen, die die Render-Eigenschaften angeben",
+    "From Materials": "Aus Materialien",
+    "How the amount of light becomes a color": "Wie aus der Lichtmenge eine Farbe wird",
+    "Levels of brightness": "Helligkeitsstufen",
+    "Look up the light in the color ramp of a texture": "Das Licht im Farbverlauf einer Textur nachschlagen",
+    "Own": "Eigene",
+    "Shade it as its materials say": "Schattieren, wie es seine Materialien angeben",
+    "Shade it as the render properties say, or by the ramp that its nodes have": (
+        "Schattieren, wie es die Render-Eigenschaften angeben, oder mit dem Farbverlauf seiner Nodes"
+    ),
+    "Show the light in even steps": "Das Licht in gleichmäßigen Stufen zeigen",
+    "Style": "Stil",
+    (
+        "Texture whose color ramp is looked up by the amount of light, from none at the left to full light at the"
+        " right. Without a texture, three even greys are used"
+    ): (
+        "Textur, in deren Farbverlauf die Lichtmenge nachgeschlagen wird, von keinem Licht links bis zu vollem "
+        "Licht rechts. Ohne Textur sind es drei gleichmäßige Grautöne"
+    ),
+    "The lines along its silhouettes and creases": "Die Linien entlang der Umrisse und Knicke",
+    "Toon and Lines": "Toon und Linien",
+    "Where Objects Meet": "Wo sich Objekte treffen",
+    "Width of the lines": "Breite der Linien",
     "16 Bit": "16 Bit",
     (
         "Fade pixels to the background where their splats' weights sum to less than this. It has no effect with Mip "

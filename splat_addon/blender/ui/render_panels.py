@@ -106,7 +106,14 @@ class RENDER_PT_surfel_lines(_RenderPanel, bpy.types.Panel):
     bl_label = "Lines"
     bl_translation_context = TEXTS
     bl_options = frozenset({"DEFAULT_CLOSED"})
-    properties = ("line_width", "line_color", "line_crease_angle", "line_shallow_angle", "line_depth_threshold")
+    properties = (
+        "line_width",
+        "line_color",
+        "line_crease_angle",
+        "line_shallow_angle",
+        "line_depth_threshold",
+        "lines_meet",
+    )
 
     def draw_header(self, context):
         self.layout.prop(getattr(context.scene, RENDER_SETTINGS), "use_lines", text="")

@@ -39,5 +39,5 @@ class Style:
         check_range("A style's group", self.group, 0, MAX_INDEX, is_whole=True)
 
 
-#: As the rest of the picture.
+#: What has no style of its own.
 AS_THE_PICTURE = Style()
