@@ -7,7 +7,9 @@ import pytest
 
 from splat_addon.blender.geometry.mesh_extraction import read_mesh
 from splat_addon.blender.materials.graphs.channels import constant_of
+from splat_addon.blender.materials.graphs.vector_readers import inverse_of
 from splat_addon.blender.materials.surface_shaders import surface_shader
+from splat_addon.blender.materials.texture_images import UnreadableError
 from splat_addon.blender.working_space import luminance
 from splat_addon.shading_nodes import numbers, vectors
 from splat_addon.shading_nodes.colors import hue_saturation
@@ -374,3 +376,11 @@ def test_shaders_mixed_by_nodes_show_each_where_it_is(surface):
     color = found.color.factors[0].image.pixels
     assert np.allclose(color[..., 0], (1 - mask) / opacity, atol=1e-5) and np.allclose(color[..., 2], 0)
     assert np.allclose(color[..., 1], mask / 2 / opacity, atol=1e-5)
+
+
+@pytest.mark.parametrize("scale", [0.0, np.inf])
+def test_vectors_in_the_space_of_an_object_without_one_are_named(scale):
+    owner = bpy.data.objects.new("flat", bpy.data.meshes.new("flat"))
+    owner.matrix_world = np.diag((1, scale, 1, 1))
+    with pytest.raises(UnreadableError, match="the transform of 'flat', which has a scale of 0 or is not finite"):
+        inverse_of(owner)

@@ -14,6 +14,7 @@ from typing import Any
 import bpy
 
 from ..conversion.placement import is_uneven
+from ..materials.node_walks import has_volume
 from ..materials.surface_shaders import Shader
 
 #: shader node type -> unsupported sockets, and the value at which each has no effect. Sockets that only matter together
@@ -134,7 +135,7 @@ _ROUNDING = 1e-4
 
 _WORLDS: _Rules = (
     (
-        lambda w: bool(w.node_tree and (o := w.node_tree.get_output_node("ALL")) and o.inputs["Volume"].is_linked),
+        lambda w: has_volume(w.node_tree),
         "has a volume, which this engine does not draw",
     ),
     (

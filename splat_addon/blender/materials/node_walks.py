@@ -141,6 +141,13 @@ def linked(socket: Socket) -> tuple[Node, str] | None:
     return None
 
 
+def has_volume(tree: bpy.types.NodeTree | None) -> bool:
+    """Whether something is linked to the volume of a tree's output, which of a light has none."""
+    output = tree.get_output_node("ALL") if tree else None
+    socket = output.inputs.get("Volume") if output else None
+    return socket is not None and linked(socket) is not None
+
+
 def input_of(node: Node, identifier: str) -> Socket:
     """The input of a node with that identifier."""
     return next(socket for socket in node.inputs if socket.identifier == identifier)

@@ -11,7 +11,7 @@ import bpy
 from ..working_space import luminance
 from .node_products import Product, constant, product
 from .node_trees import uses_nodes
-from .node_walks import MAX_CHAIN, linked, outer, passed_through_link, within
+from .node_walks import MAX_CHAIN, has_volume, linked, outer, passed_through_link, within
 from .socket_ranges import finite_factors, has_range, in_range
 from .texture_images import UnreadableError
 
@@ -145,9 +145,7 @@ def why_unseen(material: bpy.types.Material) -> str | None:
         return None
     shader = surface_shader(material)
     if shader is None:
-        output = material.node_tree.get_output_node("ALL")
-        has_volume = output is not None and linked(output.inputs["Volume"]) is not None
-        return "has no surface but a volume, which is not drawn" if has_volume else None
+        return "has no surface but a volume, which is not drawn" if has_volume(material.node_tree) else None
     if shader.node.mute or shader.node.type != "BSDF_TRANSPARENT":
         return None
     if shader.is_clear:

@@ -22,7 +22,7 @@ from .table import CORNERS
 #: maps are not fitted to all of them.
 REACH = 128
 
-#: Pieces end at planes around the eye whose distances are powers of this.
+#: Pieces end at planes around the eye whose distances are powers of this, as far as the camera sees.
 _STEP = 32.0
 
 
@@ -147,18 +147,20 @@ def _column(camera: Camera) -> float:
 
 
 def _planes(camera: Camera, corners: np.ndarray) -> Iterator[tuple[int, float]]:
-    """The axis, in view space, and the distance of the planes at which triangles are cut."""
+    """The axis, in view space, and the distance of the planes at which triangles are cut: none lies beyond the first
+    around all that the camera sees."""
     if camera.is_orthographic:
-        first, axes = _column(camera), 2
+        first, last, axes = _column(camera), 0.0, 2
     else:
         nearest = max(float(_distances(corners).min()), camera.near)
         first, axes = _STEP ** math.ceil(math.log(2 * nearest, _STEP)), 3
+        last = camera.far * max(1.0, *map(abs, camera.window))
     for axis in range(axes):
         low, high = float(corners[..., axis].min()), float(corners[..., axis].max())
-        distance = first
-        while distance < max(-low, high):
+        distance, before = first, 0.0
+        while distance < max(-low, high) and before <= last:
             yield from ((axis, at) for at in (-distance, distance) if low < at < high)
-            distance *= _STEP
+            distance, before = distance * _STEP, distance
 
 
 def _distances(corners: np.ndarray) -> np.ndarray:

@@ -221,6 +221,13 @@ def test_an_ordinary_area_or_spot_has_nothing_to_say(kind, ordinary, warned):
     assert warned() == []
 
 
+def test_a_world_with_the_output_of_a_lamp_has_no_volume(ordinary, warned):
+    nodes = ordinary[0].world.node_tree.nodes
+    nodes.clear()
+    nodes.new("ShaderNodeOutputLight")
+    assert not any("volume" in sentence or "fault" in sentence for sentence in warned())
+
+
 @pytest.mark.parametrize("switch", SWITCHES, ids=lambda switch: switch.__name__)
 def test_a_switch_that_is_passed_over_is_named(switch, ordinary, warned):
     switch(*ordinary)

@@ -5,8 +5,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from ....shading_nodes import Graph, constant_value
 from ..mesh_layers import MeshLayers
 from ..node_walks import Node
@@ -16,7 +14,7 @@ from ..texture_images import UnreadableError
 from ..transparent_mixes import TransparentMix
 from . import converters, seen_straight_on, sources, textures, vector_readers  # noqa: F401 they register what nodes become
 from .reading import GraphReading, Value
-from .vector_readers import as_direction
+from .vector_readers import as_direction, inverse_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,8 +79,8 @@ def read_color(socket, groups: tuple[Node, ...], layers: MeshLayers) -> ReadGrap
 def read_normal(socket, groups: tuple[Node, ...], layers: MeshLayers) -> ReadGraph:
     """A Normal socket as the colour of a normal map in object space. Raises UnreadableError."""
     reading = GraphReading(layers, groups)
-    matrix = np.linalg.inv(np.array(reading.owner.matrix_world, np.float64))
-    shown = reading.vector("halved", as_direction(reading, reading.read_strictly(socket), matrix, "NORMAL"))
+    normal = as_direction(reading, reading.read_strictly(socket), inverse_of(reading.owner), "NORMAL")
+    shown = reading.vector("halved", normal)
     return ReadGraph(*reading.graph(shown), reading.doubts, reading.asks_owner)
 
 

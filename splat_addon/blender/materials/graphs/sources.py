@@ -12,7 +12,7 @@ from ..node_walks import Node, Socket, linked
 from ..texture_images import UnreadableError
 from ..texture_placement import uv_layer
 from .reading import REST, GraphReading, Value, reads, unreadable
-from .vector_readers import as_direction
+from .vector_readers import as_direction, inverse_of
 
 
 def uv(tree: GraphReading, name: str) -> Value:
@@ -53,10 +53,7 @@ def _coordinates(tree: GraphReading, node: Node, output: str) -> Value:
         place = derived(tree, POSITION)
         if node.object is None:
             return place
-        other = np.array(node.object.matrix_world, np.float64)
-        if abs(np.linalg.det(other[:3, :3])) == 0:
-            raise unreadable(node, f"of the object {node.object.name!r}, which has a scale of 0")
-        return as_direction(tree, in_world(tree, place, "POINT"), np.linalg.inv(other), "POINT")
+        return as_direction(tree, in_world(tree, place, "POINT"), inverse_of(node.object), "POINT")
     raise unreadable(node, f"that gives {output}, which depends on the view")
 
 

@@ -5,8 +5,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from ....interchange.placement import flattens
 from ....shading_nodes import vectors
 from ..node_walks import Node
+from ..texture_images import UnreadableError
 from .reading import GraphReading, Value, reads, unreadable
 
 
@@ -61,13 +63,28 @@ def _transform(tree: GraphReading, node: Node, output: str) -> Value:
         return given
     matrix = np.array(tree.owner.matrix_world, np.float64)
     if node.convert_from == "WORLD":
-        matrix = np.linalg.inv(matrix)
+        matrix = inverse_of(tree.owner)
     return as_direction(tree, given, matrix, node.vector_type)
+
+
+def inverse_of(object_) -> np.ndarray:
+    """(4, 4) from the world to an object. Raises UnreadableError if its transform has no inverse."""
+    matrix = np.array(object_.matrix_world, np.float64)
+    if not np.isfinite(matrix).all() or flattens(matrix[:3, :3]):
+        raise UnreadableError(f"the transform of {object_.name!r}, which has a scale of 0 or is not finite")
+    return np.linalg.inv(matrix)
 
 
 def as_direction(tree: GraphReading, given: Value, matrix: np.ndarray, kind: str) -> Value:
     """A vector through a (4, 4) matrix: as a point, a vector, or a normal, which becomes a unit vector."""
-    linear = matrix[:3, :3] if kind != "NORMAL" else np.linalg.inv(matrix[:3, :3]).T
+    linear = matrix[:3, :3] if kind != "NORMAL" else _of_normals(matrix[:3, :3])
     shift = matrix[:3, 3:] if kind == "POINT" else np.zeros((3, 1))
     moved = tree.vector("transformed", given, settings=(np.hstack([linear, shift]).astype(np.float32),))
     return tree.vector("unit", moved) if kind == "NORMAL" else moved
+
+
+def _of_normals(linear: np.ndarray) -> np.ndarray:
+    """(3, 3) what turns normals where `linear` moves places."""
+    if not np.isfinite(linear).all() or flattens(linear):
+        raise UnreadableError("a normal in the space of an object that has a scale of 0 or is not finite")
+    return np.linalg.inv(linear).T
