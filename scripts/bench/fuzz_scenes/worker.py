@@ -115,8 +115,8 @@ class Case:
                 values = getattr(frame, name)
                 self.not_finite += 0 if values is None else int(np.count_nonzero(~np.isfinite(values)))
 
-        final_render.kept = look
-        self._called(bpy.ops.render.render)
+        with final_render.exchanging(kept=look):
+            self._called(bpy.ops.render.render)
         self.unworded += [each for each in final_render.last_frame_stats.get("notes", ()) if FAULT in each]
 
     def _convert(self) -> None:

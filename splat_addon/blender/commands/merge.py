@@ -94,11 +94,8 @@ def _tile_files(scene: bpy.types.Scene, frame: int, tiles: tuple[int, int]) -> I
 
 def _merge(scene: bpy.types.Scene, frame: int, parts: list[Path]) -> None:
     wholes = joined_parts(parts, picture_size(scene.render), frame)
-    final_render.given = lambda layer, view: wholes.pop((layer, view), None)
-    try:
+    with final_render.exchanging(given=lambda layer, view: wholes.pop((layer, view), None)):
         write_picture(scene, frame)
-    finally:
-        final_render.given = None
 
 
 def _blocks(options: argparse.Namespace) -> Iterator[Path]:

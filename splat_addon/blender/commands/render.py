@@ -99,11 +99,8 @@ def _tiles(scene: bpy.types.Scene, frames: list[int], options: argparse.Namespac
 def _drawn() -> dict[tuple[str, str], Frame]:
     """Collect what the engine draws, by view layer and view."""
     drawn = {}
-    final_render.kept = lambda layer, view, frame: drawn.update({(layer, view): frame})
-    try:
+    with final_render.exchanging(kept=lambda layer, view, frame: drawn.update({(layer, view): frame})):
         _render()
-    finally:
-        final_render.kept = None
     return drawn
 
 

@@ -4,8 +4,10 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
+from typing import NamedTuple
 
 import bpy
 
@@ -14,7 +16,8 @@ from ...rendering import Frame, RenderCancelled, Renderer, open_device
 from ..doors import unattended, with_handlers
 from ..export.camera import depth_of_field_notes, rendered_part, view_camera
 from ..export.live_meshes import LiveMeshes
-from ..export.scene import Notes, SurfelStore, export_scene
+from ..export.notes import Notes
+from ..export.scene import SurfelStore, export_scene
 from ..materials import matcap_images
 from ..preferences import most_bytes
 from ..properties import final_settings, stops_where_broken
@@ -25,16 +28,36 @@ from .render_passes import absent_passes, hand_over, outputs_of
 #: `LiveMeshes`.
 last_frame_stats: dict = {}
 
-#: Called with each drawn frame and the names of its view layer and view; used to keep tiles.
-kept: Callable[[str, str, Frame], None] | None = None
 
-#: Returns a frame for a view layer and view instead of drawing it; used for tiles that were joined.
-given: Callable[[str, str], Frame | None] | None = None
+class Exchange(NamedTuple):
+    """What the engine does beside a render that Blender asks for, by the names of a view layer and a view.
+
+    kept: called with each frame that was drawn; to keep tiles. given: returns a frame instead of drawing it; of tiles
+        that were joined.
+    """
+
+    kept: Callable[[str, str, Frame], None] | None = None
+    given: Callable[[str, str], Frame | None] | None = None
+
+
+_exchange = Exchange()
+
+
+@contextmanager
+def exchanging(**callbacks) -> Iterator[None]:
+    """Exchange frames with the renders within this context: Blender hands nothing on to an engine. callbacks: fields of
+    `Exchange`."""
+    global _exchange
+    before, _exchange = _exchange, Exchange(**callbacks)
+    try:
+        yield
+    finally:
+        _exchange = before
 
 
 def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> None:
     """Render one view layer. Raises ValueError or RuntimeError with a sentence for the user."""
-    if given is not None:
+    if _exchange.given is not None:
         _hand_over_given(engine, depsgraph)
         return
     if engine.is_preview:
@@ -50,8 +73,8 @@ def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> No
             engine.active_view_set(view)
             frame, notes = _picture(engine, depsgraph, resources, settings, (number, len(views)))
             _tell(engine, frame, notes, resources)
-            if kept is not None:
-                kept(depsgraph.view_layer.name, view, frame)
+            if _exchange.kept is not None:
+                _exchange.kept(depsgraph.view_layer.name, view, frame)
             hand_over(engine, depsgraph.view_layer, view, frame)
     except RenderCancelled:
         is_cancelled = True
@@ -91,7 +114,7 @@ def _hand_over_given(engine, depsgraph) -> None:
     """Use a given frame. Raises ValueError if it does not match what the view layer requests."""
     layer = depsgraph.view_layer
     for view in [view.name for view in engine.get_result().views]:
-        frame = given(layer.name, view)
+        frame = _exchange.given(layer.name, view)
         absent = [name for name in outputs_of(layer) if frame is None or getattr(frame, name) is None]
         if absent:
             raise ValueError(f"The tiles have no {absent[0]} of the view layer {layer.name!r}; draw them again.")

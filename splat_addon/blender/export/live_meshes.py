@@ -14,7 +14,6 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import partial
-from types import SimpleNamespace
 from typing import NamedTuple
 
 import bpy
@@ -50,6 +49,7 @@ from ..materials.surface_textures import kept_normal_maps, kept_textures
 from ..mesh_sampling_settings import Form
 from . import passed_over
 from .holdouts import held_slots, with_holes
+from .notes import Notes
 from .object_detail import finer
 from .shading import shading_material
 from .styles import OF_MATERIALS, ObjectStyle
@@ -328,8 +328,9 @@ class LiveMeshes:
 
     def _read(self, live: LiveMesh, evaluated: bpy.types.Object, group: str, override) -> None:
         # repeated each frame, because the mesh itself is not read each frame
-        live.said = list(passed_over.of_object(evaluated.original))
-        notes = SimpleNamespace(add=live.said.append)
+        notes = Notes()
+        for sentence in passed_over.of_object(evaluated.original):
+            notes.add(sentence)
         with readable_mesh(evaluated) as mesh:
             slots = slot_materials(evaluated, mesh)
             if override is not None:
@@ -337,11 +338,12 @@ class LiveMeshes:
             live.topology = read_topology(mesh, live.topology)
             live.content = read_mesh(evaluated, mesh, live.topology, self._images, slots)
             if unusable := _not_finite(live.content.triangles):
-                live.said.append(f"{live.owner}: {unusable:,} triangles with a non-finite vertex are left out")
+                notes.add(f"{live.owner}: {unusable:,} triangles with a non-finite vertex are left out")
             live.parts = parts_by_group(evaluated, mesh, live.content.triangles, group) if group else None
             live.bends = evaluated.original.is_deform_modified(bpy.context.scene, "RENDER")
             live.materials = tuple(shading_material(material, notes, OPTIONAL_LAYOUT) for material in slots)
             live.held = held_slots(slots)
+        live.said = list(notes.counts.elements())
 
     def _sampled(
         self, live: LiveMesh, depsgraph: bpy.types.Depsgraph, density: dict[str, float], looks: dict[str, bool]

@@ -4,7 +4,6 @@ counted."""
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
@@ -13,7 +12,6 @@ from typing import NamedTuple
 import bpy
 import numpy as np
 
-from ...faults import sentence_of
 from ...primaries import recolored
 from ...rendering import Instance, Light, Scene
 from ...rendering.detail.hierarchies import replaced
@@ -47,43 +45,13 @@ from .entries import kind_of, matrices_of
 from .holdouts import held_slots, with_holes
 from .light_linking import LightSets
 from .live_meshes import LiveMesh, LiveMeshes, Manner, Place
+from .notes import Notes
 from .object_detail import detail_of
 from .scan_colors import Column, painter
 from .shading import light_of, shading_material
 from .streams import Streams, not_followed
 from .styles import style_of
 from .world import WorldStore
-
-
-@dataclass
-class Notes:
-    """Messages about a scene: sentence -> how often. left_out: messages about objects or lights that should be visible
-    but are not."""
-
-    counts: Counter = field(default_factory=Counter)
-    left_out: list[str] = field(default_factory=list)
-
-    def add(self, sentence: str, count: int = 1) -> None:
-        if count:
-            self.counts[sentence] += count
-
-    def leave_out(self, name: str, error: Exception) -> None:
-        """Record that an object or light of this name cannot be drawn. Without memory, nothing can: raises MemoryError
-        again."""
-        if isinstance(error, MemoryError):
-            raise error
-        self.left_out.append(f"{name} is left out: {sentence_of(error)}")
-        self.add(self.left_out[-1])
-
-    def add_those_of(self, other: Notes, times: int) -> None:
-        """Add what was said of one thing for that many like it."""
-        self.left_out += other.left_out * times
-        for sentence, count in other.counts.items():
-            self.add(sentence, count * times)
-
-    def sentences(self) -> list[str]:
-        """One sentence each, with its count if it occurred more than once."""
-        return [text if count == 1 else f"{text} ({count} times)" for text, count in self.counts.items()]
 
 
 class Kept(NamedTuple):

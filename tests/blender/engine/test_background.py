@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from splat_addon.blender.engine import viewport
-from splat_addon.blender.export.scene import Notes, SurfelStore
+from splat_addon.blender.export.notes import Notes
+from splat_addon.blender.export.scene import SurfelStore
 
 
 @pytest.fixture

@@ -9,7 +9,7 @@ import pytest
 
 from splat_addon.blender.engine.render_passes import RENDER_PASSES, absent_passes, asked_for
 from splat_addon.blender.export import passed_over
-from splat_addon.blender.export.scene import Notes
+from splat_addon.blender.export.notes import Notes
 from splat_addon.blender.export.shading import shading_material
 from splat_addon.blender.materials.surface_shaders import SHADERS
 

@@ -238,7 +238,7 @@ def test_the_texture_follows_a_mesh_that_deforms(live_square, scene, image, tmp_
 
 def test_a_viewport_reads_an_image_again_only_where_it_is_told(image):
     """A painted image stays dirty until it is saved, so every move of an object would otherwise read it again."""
-    from splat_addon.blender.export.scene import Notes
+    from splat_addon.blender.export.notes import Notes
     from splat_addon.blender.materials.surface_textures import TextureStore
 
     material, store, seen = textured_material(image), TextureStore(), []
@@ -271,7 +271,7 @@ def test_a_conversion_without_images_says_that_nothing_is_texture_mapped(add_squ
 
 def test_each_of_several_materials_keeps_its_texture_from_frame_to_frame(add_square, image):
     """A texture that is the same object stays on the device. In a render, materials are evaluated."""
-    from splat_addon.blender.export.scene import Notes
+    from splat_addon.blender.export.notes import Notes
     from splat_addon.blender.materials.surface_textures import TextureStore
 
     for tint in (None, (0.5, 0.5, 0.5)):

@@ -5,7 +5,8 @@ import bpy
 import numpy as np
 import pytest
 
-from splat_addon.blender.export.scene import Notes, SurfelStore
+from splat_addon.blender.export.notes import Notes
+from splat_addon.blender.export.scene import SurfelStore
 from splat_addon.rendering import Scene
 
 
