@@ -1,5 +1,5 @@
 // References: Guennebaud, Barthe, Paulin 2006, section 3 (the plane's homography); written relative to the splat's
-//             centre, which keeps its digits for small and far splats where adj(M) loses them.
+//             centre, of which places and depths are then changes.
 // Summary: maps points of the picture to positions in a splat's plane, for perspective and parallel cameras. The twin
 //          of reference/methods/plane.py.
 
