@@ -28,8 +28,9 @@ def figures(renderer: Renderer, models: Path, size: int) -> Iterator[tuple[str, 
         return in_view(_surfels(models / name, resolution), size, **view)
 
     yield from of_2003.figures(draw, renderer.render, model, size)
-    yield from of_2005.figures(draw, model, size)
+    yield from of_2005.figures(draw, renderer, model, size)
     yield from of_2006.figures(draw, renderer.render, size)
+    yield from of_view_independent.figures_of_models(draw, model)
     yield from of_view_independent.figures(draw, size)
     yield from of_view_independent.figures_of_sampling(draw, models, size)
 

@@ -32,6 +32,12 @@ CELL = 0.09
 DOT = 0.022
 
 
+def figures_of_models(draw: Draw, model):
+    names = "armadillo.obj.gz", "bunny.obj.gz", "spot.obj.gz", "fandisk.obj.gz"
+    shown = [draw(model(name, 200), LIT, method="quad", multisampling=4) for name in names]
+    yield "view-independent-1", "Models, by 4 hardware samples: armadillo, bunny, spot, fandisk", shown, 1
+
+
 def figures(draw: Draw, size: int):
     wide = size, size // 2
     images = checks(1024, 64), letters(15)
