@@ -22,7 +22,7 @@ from .detail.streamed import Streamed
 from .device import Device
 from .device.interface import Target, texture_bytes
 from .device.interface import Texture as DeviceTexture
-from .features import reflections
+from .features import mirrors, reflections
 from .features.outputs import check_samplers
 from .features.sample_sum import SUM
 from .frame import OUTPUTS, Frame
@@ -184,22 +184,22 @@ class Renderer:
         before = no_history(scene) if is_repeatable else history(scene, self._drawn)
         frame_plan = plan(scene, camera, settings, history=before, **options)
         check_samplers(frame_plan, self.device.max_samplers)
-        return Shared(
-            scene, frame_plan, settings, repeated, before, self._probes(scene, frame_plan, settings, is_repeatable)
-        )
+        seen = self._reflected(scene, camera, settings, frame_plan, is_repeatable)
+        return Shared(scene, frame_plan, settings, repeated, before, *seen)
 
-    def _probes(self, scene: Scene, frame_plan: FramePlan, settings: Settings, is_repeatable: bool):
-        """What the plan's probes see, drawn if anything in the scene has changed; None if it has none."""
-        probes = frame_plan.found.get(reflections.probes)
-        if not probes:
-            return None
+    def _reflected(self, scene: Scene, camera: Camera, settings: Settings, frame_plan: FramePlan, is_repeatable: bool):
+        """What the plan's probes and mirror see, drawn if anything in it has changed; None for what it lacks."""
 
         def draw(seen: Scene, camera: Camera, of: Viewers, plain: Settings) -> Frame:
-            return self._frame(
-                self._planned(seen, camera, plain, is_repeatable=is_repeatable, viewers=of), camera, None, None
-            )
+            shared = self._planned(seen, camera, plain, is_repeatable=is_repeatable, viewers=of)
+            return self._frame(shared, camera, None, None)
 
-        return self.probes.pictures(scene, probes, settings, draw)
+        found = frame_plan.found
+        probes, mirror = found.get(reflections.probes), found.get(mirrors.mirror)
+        return (
+            self.probes.pictures(scene, probes, settings, draw) if probes else None,
+            self.probes.mirror(scene, mirror, camera, settings, draw) if mirror else None,
+        )
 
     def _was_drawn(self, scene: Scene) -> None:
         """A picture of the scene is complete."""

@@ -342,8 +342,9 @@ ALL_AROUND = {"panorama": lambda: around(*scenes.torus(count=COUNT, size=SIZE))}
 
 
 def mirrored(scene, camera):
-    """Metal balls of several roughnesses before a painted floor."""
-    floor, ball = scene.polygons[0], scenes.round_polygons(12)
+    """Metal balls of several roughnesses before a polished floor."""
+    floor = replace(scene.polygons[0], materials=(Material(roughness=0.3),))
+    ball = scenes.round_polygons(12)
     placed = [floor]
     for number, roughness in enumerate((0.0, 0.15, 0.35, 0.7)):
         matrix = np.diag((0.3, 0.3, 0.3, 1.0))

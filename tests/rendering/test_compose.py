@@ -23,7 +23,16 @@ CHOICES = {
     "world_light",
     "lighting_picture",
 }
-CHOICES |= {"shadow_taps", "polygon_share", "polygon_blend", "sides", "rest_opacity", "faces", "instances"}
+CHOICES |= {
+    "shadow_taps",
+    "polygon_share",
+    "polygon_blend",
+    "sides",
+    "rest_opacity",
+    "faces",
+    "instances",
+    "polygon_light",
+}
 #: Files of shaders/lib that two methods have in common.
 SHARED = "homogeneous", "raycast", "sprites", "surfel_quad"
 GLOBAL = re.compile(r"^(?:const )?(?:struct (\w+)|\w+ (\w+)(?:\[\d*\])?(?:\(| =|;))", re.MULTILINE)

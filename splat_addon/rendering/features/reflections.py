@@ -14,18 +14,19 @@ from ..probes.places import MAX_PROBES, probes_of
 
 def probes(planning):
     """The probes of the frame."""
-    if why := _missing(planning):
+    if why := planning.find(missing):
         planning.skip("reflections", why)
         return ()
     found, without = probes_of(planning.scene, planning.around)
     if not found:
-        planning.skip("reflections", "nothing is glossy")
+        planning.skip("reflections", "nothing that is not flat is glossy")
     if without:
         planning.skip(f"reflections of {without} objects", f"there is room for {MAX_PROBES} probes")
     return found
 
 
-def _missing(planning) -> str:
+def missing(planning) -> str:
+    """The reason why the frame has no reflections, or ""."""
     if not planning.settings.reflections:
         return "they are switched off"
     if not planning.model.has_finish:

@@ -13,6 +13,7 @@ from ..detail.history import NOTHING, History
 from ..device.interface import Pipeline, Texture, texture_bytes
 from ..identity import Identities
 from ..passes.decisions import shadows
+from ..probes.mirrors import MirrorPicture
 from ..probes.pictures import ProbePictures
 from ..sample_views import SampleViews, clip_around
 from ..scene import Instance, Scene
@@ -32,7 +33,8 @@ _MOST_BYTES = 1 << 26
 
 class Shared:
     """A scene, the plan of its picture, and what depends on nothing else. samples: of the picture that are drawn one
-    right after the other. history: as of `plan`. probes: what the plan's probes see, if it has any."""
+    right after the other. history: as of `plan`. probes, mirror: what the plan's probes see, and
+    its mirror, if it has any."""
 
     def __init__(
         self,
@@ -42,9 +44,10 @@ class Shared:
         samples: int = 1,
         history: History = NOTHING,
         probes: ProbePictures | None = None,
+        mirror: MirrorPicture | None = None,
     ):
         self.scene, self.plan, self.settings, self.samples, self.history = scene, plan, settings, samples, history
-        self.probes = probes
+        self.probes, self.mirror = probes, mirror
         self._kept: dict[Hashable, object] = {}
         self._tables: dict[tuple[bytes, bytes], Texture] = {}
         self._programs: dict[tuple, tuple[Pass, Pipeline]] = {}

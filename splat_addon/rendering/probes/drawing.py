@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws the pictures of a scene's probes, and keeps them as long as nothing in the scene changes."""
+"""Draws the pictures of a scene's probes and mirror, and keeps them as long as nothing in the scene changes."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from ..scene.octahedral import Octahedral
 from ..scene.panorama import Panorama
 from ..settings import Settings
 from ..shadows.receivers import Viewers
+from .mirrors import Mirror, MirrorPicture, mirrored_camera
 from .pictures import ProbePictures, side_of
 from .places import Probe
 
@@ -28,10 +29,11 @@ _NEAREST, _FARTHEST = 1e-3, 1.01
 
 
 class Probes:
-    """The pictures of one renderer's last scene."""
+    """The pictures of one renderer's last scene, and of the last view's mirror."""
 
     def __init__(self):
         self._kept: tuple[tuple, ProbePictures] | None = None
+        self._mirrored: tuple[tuple, MirrorPicture] | None = None
 
     def pictures(self, scene: Scene, probes: tuple[Probe, ...], settings: Settings, draw: Draw) -> ProbePictures:
         """What the probes see: the same object as long as the scene is."""
@@ -40,7 +42,7 @@ class Probes:
         if self._kept is None or self._kept[0] != made_from:
             frames = []
             for probe in probes:
-                seen, panorama = _seen(scene, probe), _panorama(scene, probe, size)
+                seen, panorama = _seen(scene, probe.left_out), _panorama(scene, probe, size)
 
                 def drawn(camera, of, settings, progress, seen=seen) -> Frame:
                     return draw(seen, camera, of, settings)
@@ -49,8 +51,18 @@ class Probes:
             self._kept = made_from, ProbePictures(probes, frames)
         return self._kept[1]
 
+    def mirror(self, scene: Scene, mirror: Mirror, camera: Camera, settings: Settings, draw: Draw) -> MirrorPicture:
+        """What the mirror shows to a camera: the same object as long as both stay."""
+        plain, behind = replace(_plain(settings), supersampling=2), mirrored_camera(mirror, camera)
+        view = behind.matrix_world.tobytes(), behind.window, behind.size, behind.near, behind.far
+        made_from = mirror, view, behind.is_orthographic, plain, _contents(scene)
+        if self._mirrored is None or self._mirrored[0] != made_from:
+            seen = draw(_seen(scene, mirror.left_out), behind, Viewers(behind, (behind,)), plain)
+            self._mirrored = made_from, MirrorPicture(mirror, behind, seen)
+        return self._mirrored[1]
+
     def forget(self) -> None:
-        self._kept = None
+        self._kept = self._mirrored = None
 
 
 def _plain(settings: Settings) -> Settings:
@@ -70,9 +82,9 @@ def _panorama(scene: Scene, probe: Probe, size: tuple[int, int]) -> Panorama:
     return Panorama(matrix, Octahedral(size[0] - 2), size, near, max(_FARTHEST * away, 2 * near))
 
 
-def _seen(scene: Scene, probe: Probe) -> Scene:
-    """The scene in which what is left out only casts its shadow."""
-    left_out = {id(scene.table.placed[row]) for row in probe.left_out}
+def _seen(scene: Scene, rows: tuple[int, ...]) -> Scene:
+    """The scene in which what is in these rows of its table only casts its shadow."""
+    left_out = {id(scene.table.placed[row]) for row in rows}
 
     def of(placed) -> tuple:
         return tuple(replace(one, is_seen=False) if id(one) in left_out else one for one in placed)

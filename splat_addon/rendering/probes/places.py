@@ -21,7 +21,7 @@ _LEAST_METALLIC = 0.5
 #: A coat on less than this share of a surface shows the world alone.
 _LEAST_COAT = 0.05
 #: Of what is flatter than this share of its length, each place sees something else.
-_FLATTEST = 0.02
+FLATTEST = 0.02
 
 
 @dataclass(frozen=True)
@@ -51,10 +51,10 @@ def probes_of(scene: Scene, camera: Camera) -> tuple[tuple[Probe, ...], int]:
     are_glossy = glossy(table)
     if not are_glossy.any():
         return (), 0
-    middles, axes = _boxes(table)
+    middles, axes = boxes(table)
     lengths = np.linalg.norm(axes, axis=2)
     radii = lengths.max(axis=1)
-    is_round = (lengths.min(axis=1) > _FLATTEST * radii) & ~table.are_flattened
+    is_round = (lengths.min(axis=1) > FLATTEST * radii) & ~table.are_flattened
     rows = np.flatnonzero(are_glossy & is_round)
     # polygons and surfels of a split object have one together
     rows = rows[np.unique(np.concatenate([middles, axes.reshape(-1, 9)], axis=1)[rows], axis=0, return_index=True)[1]]
@@ -75,7 +75,7 @@ def _probe(table: InstanceTable, row: int, middles, axes, radii, camera: Camera)
     return Probe(tuple(middles[row].tolist()), rows, left_out, _least_roughness(table.placed[row]))
 
 
-def _boxes(table: InstanceTable) -> tuple[np.ndarray, np.ndarray]:
+def boxes(table: InstanceTable) -> tuple[np.ndarray, np.ndarray]:
     """(n, 3) middles and (n, 3, 3) half-axes of boxes around the objects, world."""
     corners = table.world_corners
     return corners.mean(axis=1), (corners[:, [1, 2, 4]] - corners[:, :1]) / 2
