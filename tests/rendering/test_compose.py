@@ -22,6 +22,7 @@ CHOICES = {
     "background",
     "world_light",
     "lighting_picture",
+    "polygon_light",
 }
 CHOICES |= {
     "shadow_taps",

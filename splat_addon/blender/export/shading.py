@@ -13,6 +13,7 @@ import numpy as np
 from ...rendering import Finish, Light, Material
 from ...rendering.scene.material import reflectance
 from ..geometry.node_groups import nodes_in
+from ..materials.graphs.cartoons import cartoon_of
 from ..materials.graphs.channels import constant_of
 from ..materials.mean_surfaces import mean_of
 from ..materials.node_trees import uses_nodes
@@ -128,6 +129,8 @@ def _plain_material(material: bpy.types.Material | None, notes, own: Collection[
     """
     if material is None or not uses_nodes(material) or is_holdout(material):
         return Material(index=material.pass_index if material else 0)
+    if cartoon_of(material) is not None:
+        return Material(roughness=1.0, ior=1.0, index=material.pass_index)
     shader = surface_shader(material)
     if why := why_unseen(material):
         for sentence in passed_over.of_material(material, []) if shader else ():

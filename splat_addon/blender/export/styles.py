@@ -10,6 +10,7 @@ import bpy
 
 from ...rendering import LineStyle, Material, Ramp, Style
 from ..ids import MATERIAL_SETTINGS, OBJECT_SETTINGS, RENDER_SETTINGS
+from ..materials.graphs.cartoons import cartoon_of
 from ..materials.ramps import kept_ramp, ramp_of
 from ..style_properties import StyleProperties
 
@@ -46,7 +47,8 @@ def style_of(owner: bpy.types.Object, scene: bpy.types.Scene) -> ObjectStyle:
 
 def style_of_material(material: bpy.types.Material) -> Style:
     settings = getattr(material.original, MATERIAL_SETTINGS)
-    return Style(_ramp(settings), _line(settings))
+    cartoon = cartoon_of(material) if settings.shading == "ABOVE" else None
+    return Style(kept_ramp(cartoon.colors) if cartoon else _ramp(settings), _line(settings))
 
 
 def _ramp(settings: StyleProperties) -> Ramp | None:

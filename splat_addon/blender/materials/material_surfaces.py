@@ -15,6 +15,7 @@ import bpy
 from ...sampling import Channel, Computed, NormalMap, Surface, Texture, VertexColors
 from ...sampling.materials.surfaces import ALPHA, RED
 from ...shading_nodes import constant_value
+from .graphs.cartoons import Cartoon, cartoon_of
 from .graphs.channels import ReadGraph, read_channel, read_color, read_normal
 from .graphs.flattened import flattened
 from .graphs.mixes import read_mixed
@@ -84,6 +85,8 @@ def material_surface(material: bpy.types.Material | None, layers: MeshLayers) ->
         return Surface(Channel((0.0, 0.0, 0.0, 1.0))), []
     if shader is None:
         return plain, [Unread("color", "no shader at its output")]
+    if (cartoon := cartoon_of(material)) is not None:
+        return _in_full_light(cartoon, layers)
     if shader.node.bl_idname in SHADERS:
         return _Reader(shader, layers).surface()
     mean = mean_of(shader)
@@ -92,6 +95,19 @@ def material_surface(material: bpy.types.Material | None, layers: MeshLayers) ->
         if not any(each.can_be_baked for each in unread):
             return surface, unread
     return _mixture(shader, layers) if mean.unsure else (mean.surface, [])
+
+
+def _in_full_light(cartoon: Cartoon, layers: MeshLayers) -> tuple[Surface, list[Unread]]:
+    """The colours that the ramp of a material multiplies."""
+    white = Surface(Channel((1.0, 1.0, 1.0, 1.0)))
+    if not cartoon.varies:
+        return white, []
+    try:
+        read = cartoon.in_full_light(layers)
+    except UnreadableError as error:
+        return white, [Unread("color", str(error), "it is white")]
+    made = _channel_of("color", read, layers)
+    return Surface(Channel((*made.value, 1.0), made.factors)), _doubted("color", read)
 
 
 def _behind_holes(shader: Shader | None, layers: MeshLayers) -> tuple[Surface, list[Unread]] | None:
@@ -107,6 +123,8 @@ def _behind_holes(shader: Shader | None, layers: MeshLayers) -> tuple[Surface, l
 def plain_color(material: bpy.types.Material) -> tuple[tuple[float, float, float, float], bool]:
     """The colour and opacity of a material without its textures, and whether it has textures."""
     shader = surface_shader(material) if uses_nodes(material) else None
+    if (cartoon := cartoon_of(material)) is not None:
+        return (1.0, 1.0, 1.0, 1.0), cartoon.varies
     if shader is None:
         is_unseen = why_unseen(material) is not None
         return (0.0, 0.0, 0.0, 0.0) if is_unseen else _display_color(material), False
