@@ -74,8 +74,9 @@ def build_scene():
 
 
 def convert():
-    """Convert the selection as a press of the button does."""
+    """Convert the selection as a press of the large button does."""
     with in_view():
+        assert extension("ui.chosen").chosen(bpy.context).kind.operator == "object.surfels_from_mesh"
         result = bpy.ops.object.surfels_from_mesh("INVOKE_DEFAULT", resolution=128, density="RESOLUTION")
     assert result == {"RUNNING_MODAL"}, result
 
@@ -91,6 +92,21 @@ def show():
     view3d()[0].spaces[0].overlay.show_overlays = False
     with in_view():
         bpy.ops.view3d.surfels_show()
+
+
+def choose(shown: str):
+    """Press one of the buttons Source and Surfels. Selecting what is seen draws no outline, as overlays are off."""
+    with in_view():
+        bpy.ops.object.surfels_or_source(shown=shown)
+
+
+def update():
+    """Press the large button while the source is seen and selected, and sculpted."""
+    with in_view():
+        bpy.ops.object.mode_set(mode="SCULPT")
+        assert extension("ui.chosen").chosen(bpy.context).kind.operator == "object.surfels_update"
+        bpy.ops.object.surfels_update()
+        bpy.ops.object.mode_set(mode="OBJECT")
 
 
 def orbit():
@@ -145,6 +161,14 @@ def steps():
     bpy.context.scene.surfel_splatting.samples = bpy.context.scene.surfel_splatting.viewport_samples = FEW
     yield from at_rest(drawn)
     shot("shown")
+
+    choose("SOURCE")
+    yield from at_rest(drawn)
+    shot("source")
+    update()
+    choose("SURFELS")
+    yield from at_rest(drawn)
+    shot("updated")
 
     orbit()
     yield from at_rest(drawn)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A day with the installed extension in a real window works: convert, look, orbit, edit, undo, F12, save, open,
+"""A day with the installed extension in a real window works: convert, look, update, orbit, edit, undo, F12, save, open,
 disable.
 """
 
@@ -63,7 +63,14 @@ def test_an_edit_and_its_undo_reach_the_surfels(day):
     assert edited != before == undone
 
 
-@pytest.mark.parametrize("later", ["orbited_and_back", "undone", "after_f12", "opened_again", "enabled_again"])
+def test_the_source_is_seen_in_the_place_of_its_surfels(day):
+    """Both are the same red head, as polygons and as surfels."""
+    source, shown = day[1]("source"), day[1]("shown")
+    assert SAME < difference(source, shown) < 0.3
+    assert np.abs(source - shown).mean() < 0.01
+
+
+@pytest.mark.parametrize("later", ["updated", "orbited_and_back", "undone", "after_f12", "opened_again", "enabled_again"])
 def test_the_picture_comes_back(day, later):
     assert difference(day[1]("shown"), day[1](later)) < SAME
 

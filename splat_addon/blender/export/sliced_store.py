@@ -41,8 +41,9 @@ from .scene import Kept, SurfelStore, tell_replaced
 AT_ONCE = 1 << 18
 #: Seconds after which a picture copies no further attribute.
 _SECONDS = 0.05
-#: Surfels of a mesh that are read one by one, to be shown at once. They take about as long as a picture may.
-FIRST = 1 << 11
+#: Surfels of a mesh that are read one by one, to be shown at once. They take about as long as a picture may; and how many
+#: are read when its time is over, so that there is no hole.
+FIRST, FEWEST = 1 << 11, 1 << 6
 
 
 class SlicedStore(SurfelStore):
@@ -164,10 +165,11 @@ class _Reading:
     def advance(self, points: Points, until: float, clock: Callable[[], float]) -> _Read | None:
         """Go on until that time; the result when it is complete. Raises ValueError as `attributes.read_stored`."""
         if not self._rooms:
-            if clock() > until:
+            is_late = clock() > until
+            if not self._before and not (is_late and self.meanwhile):
+                self.meanwhile = self._first(points, FEWEST if is_late else FIRST)
+            if is_late:
                 return None
-            if not self._before:
-                self.meanwhile = self._first(points)
             self._rooms = {f: in_background(partial(_room, of, self.count)) for f, of in self._fields.items()}
         for field, room in self._rooms.items():
             if field not in self._arrays:
@@ -191,9 +193,9 @@ class _Reading:
         kept = Kept(self.name, stored.surfels, 0, 0) if same is None else self._before[same]
         return _Read(kept._replace(skipped=stored.skipped, strayed=stored.strayed), followed)
 
-    def _first(self, points: Points) -> Surfels | None:
+    def _first(self, points: Points, wanted: int) -> Surfels | None:
         """The set to show before the attributes have been read."""
-        rows, seen = spread(self.count, FIRST), self._fields.keys() - {REST_FIELD, *LEFT_OUT}
+        rows, seen = spread(self.count, wanted), self._fields.keys() - {REST_FIELD, *LEFT_OUT}
         arrays = {field: read_rows(points, self._fields[field], self.name, rows) for field in seen}
         return _few(arrays, self.count, self._origin, self._is_solid)
 
