@@ -141,7 +141,7 @@ def test_surfels_without_a_source_cannot_be_updated(cube, convert, drawn):
 def test_in_a_brush_s_mode_surfels_say_where_to_paint(cube, convert, drawn, mode):
     convert(resolution=8)
     bpy.ops.object.mode_set(mode=mode)
-    assert f"Brushes need faces: paint or sculpt {cube.name} and press Update" in " ".join(drawn().texts)
+    assert f"Brushes need faces: paint {cube.name}, or sculpt it and press Update" in " ".join(drawn().texts)
 
 
 def test_the_quality_is_that_of_the_density():

@@ -70,7 +70,9 @@ def test_the_source_is_seen_in_the_place_of_its_surfels(day):
     assert np.abs(source - shown).mean() < 0.01
 
 
-@pytest.mark.parametrize("later", ["updated", "orbited_and_back", "undone", "after_f12", "opened_again", "enabled_again"])
+@pytest.mark.parametrize(
+    "later", ["updated", "orbited_and_back", "undone", "after_f12", "opened_again", "enabled_again"]
+)
 def test_the_picture_comes_back(day, later):
     assert difference(day[1]("shown"), day[1](later)) < SAME
 

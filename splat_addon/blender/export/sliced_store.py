@@ -41,8 +41,8 @@ from .scene import Kept, SurfelStore, tell_replaced
 AT_ONCE = 1 << 18
 #: Seconds after which a picture copies no further attribute.
 _SECONDS = 0.05
-#: Surfels of a mesh that are read one by one, to be shown at once. They take about as long as a picture may; and how many
-#: are read when its time is over, so that there is no hole.
+#: Surfels of a mesh that are read one by one, to be shown at once. They take about as long as a picture may. When its
+#: time is over, there are fewer, so that there is no hole.
 FIRST, FEWEST = 1 << 11, 1 << 6
 
 

@@ -1131,8 +1131,8 @@ GERMAN = {
     "Advanced": "Erweitert",
     "As many surfels as the scene's camera needs": "So viele Surfels, wie die Kamera der Szene braucht",
     "Brushes need faces, and surfels have none": "Pinsel brauchen Flächen, und Surfels haben keine",
-    "Brushes need faces: paint or sculpt {name} and press Update": (
-        "Pinsel brauchen Flächen: {name} bemalen oder modellieren und „Aktualisieren“ drücken"
+    "Brushes need faces: paint {name}, or sculpt it and press Update": (
+        "Pinsel brauchen Flächen: {name} bemalen, oder modellieren und „Aktualisieren“ drücken"
     ),
     (
         "Convert the sources of the selected surfels again, with the settings in the sidebar. It is also there "

@@ -86,7 +86,7 @@ def advice(what: Chosen, context: bpy.types.Context) -> list[str]:
     if what.kind is SURFELS and what.lead == what.made and context.mode in _BRUSHES:
         if what.source is None:
             return [said("Brushes need faces, and surfels have none")]
-        return [said("Brushes need faces: paint or sculpt {name} and press Update", name=what.source.name)]
+        return [said("Brushes need faces: paint {name}, or sculpt it and press Update", name=what.source.name)]
     if what.kind in (MESHES, NOTHING):
         return [said("Meshes need no conversion: choose the engine and press F12")]
     return []
