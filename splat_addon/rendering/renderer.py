@@ -157,10 +157,17 @@ class Renderer:
             if key not in planned:
                 if len(planned) == _MOST_PLANS:
                     planned.clear()
-                around = around_samples(moved, settings.samples)
-                about = moved, settings, repeated, is_repeatable
-                options = {"viewers": of, "part": part, "samples": len(numbers), "around": around}
-                planned[key] = self._planned(scene, *about, **options)
+                planned[key] = self._planned(
+                    scene,
+                    moved,
+                    settings,
+                    repeated=repeated,
+                    is_repeatable=is_repeatable,
+                    viewers=of,
+                    part=part,
+                    samples=len(numbers),
+                    around=around_samples(moved, settings.samples),
+                )
             return self._frame(planned[key], moved, told, part)
 
         for number in numbers:
@@ -342,8 +349,8 @@ class Renderer:
             view, repeats = shared.view(number, tile_camera, whole)
             if not repeats.are_still(self.resources.textures):
                 repeats.forget()
-            about = self.resources, frame_plan, scene, tile_camera, settings, view, shared, tile
-            context = TileContext(*about, repeats=repeats)
+            of_picture = self.resources, frame_plan, scene, tile_camera, settings
+            context = TileContext(*of_picture, view=view, shared=shared, rectangle=tile, repeats=repeats)
             context.bring_blocks()
             for p in repeats.found("with cuts", partial(context.with_cuts, view.placed)):
                 context.drawn_count(p)  # chooses them

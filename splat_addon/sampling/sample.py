@@ -155,20 +155,26 @@ class SamplingRun:
         share: number of the block, from 0, and the number of blocks. surface: is told which triangles are sampled.
         """
         bands = row_bands(self._coordinates, self.grid, *share, LARGEST) if share[1] > 1 else None
-        about = self._coordinates, self.mesh.triangles, self.grid, self._keeps, surface, report
+        cube = partial(depth_cube, self._coordinates, self.mesh.triangles, self.grid, self._keeps, surface, report)
         if not self._enlarges:
-            return depth_cube(*about, bands), {}
+            return cube(bands), {}
         # a block's outermost rows depend on those beside them
         around = None if bands is None else bands + np.array([[-RING], [RING]])
-        images, large = divided(depth_cube(*about, around), self._flat_faces(), self._crossed_cells())
+        images, large = divided(cube(around), self._flat_faces(), self._crossed_cells())
         if bands is not None:
             images, large = in_bands(images, bands), {edge: in_bands(of, bands) for edge, of in large.items()}
         return images, large
 
     def _flat_faces(self) -> np.ndarray:
-        size = LEAST_AREA, self.grid.spacing
-        how = {"is_mapped": bool(self._uv_fields), "deforms": self.options.deforms}
-        return flat_faces(self.mesh, self._edges, *size, bulges=self._bulges, **how)
+        return flat_faces(
+            self.mesh,
+            self._edges,
+            LEAST_AREA,
+            self.grid.spacing,
+            bulges=self._bulges,
+            is_mapped=bool(self._uv_fields),
+            deforms=self.options.deforms,
+        )
 
     def _crossed_cells(self) -> list[np.ndarray] | None:
         return crossed_cells(self._contacts, self.grid) if self._contacts is not None else None
@@ -216,14 +222,14 @@ class SamplingRun:
         }
         cards = {}
         if self._may_have_cards:
-            about = self.mesh, self.grid.spacing, self.options.deforms
-            cards = cards_of({1: images, **large}, {1: arrays, **of_large}, *about)
+            every_image, every_table = {1: images, **large}, {1: arrays, **of_large}
+            cards = cards_of(every_image, every_table, self.mesh, self.grid.spacing, self.options.deforms)
         gaps, gap_triangles = {}, np.empty(0, np.intp)
         if self.options.crease_angle is not None:
             arrays, gaps, gap_triangles = self._clipped(arrays, images, clipping)
         if self._fits_planes:
-            about = inside_triangles(images), self.grid, self._edges.borders.are_closed()
-            fitted = fit_planes(arrays, rows_of(images), *about, fitting)
+            inside, is_closed = inside_triangles(images), self._edges.borders.are_closed()
+            fitted = fit_planes(arrays, rows_of(images), inside, self.grid, is_closed, fitting)
             arrays = arrays | fitted | turned(arrays, fitted.get("rotations", arrays["rotations"]))
         for edge, are_cards in cards.items():
             of_large.get(edge, arrays)["hidden_back"] = are_cards.astype(np.float32)
@@ -231,8 +237,7 @@ class SamplingRun:
             gaps["hidden_back"] = mostly(cards[1], images, len(self.mesh))[gap_triangles].astype(np.float32)
         saved, error = 0, 0.0
         if self._merges_flat:
-            about = self.grid.spacing, self.options.tolerance
-            arrays, error = merge_flat(arrays, axes_of(images), *about, merging)
+            arrays, error = merge_flat(arrays, axes_of(images), self.grid.spacing, self.options.tolerance, merging)
             saved = total - len(arrays["positions"])
         more, small_parts = [], int(missed[1].max(initial=-1)) + 1
         for edge, of_edge in of_large.items():
@@ -241,8 +246,7 @@ class SamplingRun:
         if gaps:
             more.append(gaps | {"triangle": gap_triangles.astype(np.int32)})
         if small_parts:
-            about = self.options.splat_size, self._sampler, self._tangents, bool(self._uv_fields)
-            more.append(component_surfels(self.mesh, self._coordinates, self.grid, missed, *about))
+            more.append(self._small_parts(missed))
         if more:
             arrays = joined(arrays, *more)
         triangles = self._kept.take(arrays["triangle"]).astype(np.int32)
@@ -250,6 +254,19 @@ class SamplingRun:
         keeps_both_sides = self._chosen.merge is None and not small_parts
         report(1.0)
         return Sampling(surfels, small_parts, keeps_both_sides, saved, error, len(gap_triangles), triangles)
+
+    def _small_parts(self, missed: tuple) -> SampleTable:
+        """A surfel for each part that no ray hits."""
+        return component_surfels(
+            self.mesh,
+            self._coordinates,
+            self.grid,
+            missed,
+            largest_radius=self.options.splat_size,
+            sampler=self._sampler,
+            tangents=self._tangents,
+            texture_mapped=bool(self._uv_fields),
+        )
 
     @property
     def _may_have_cards(self) -> bool:
@@ -286,8 +303,8 @@ class SamplingRun:
                 yield part
 
         fields = clip_fields(parts(), len(arrays["positions"]))
-        about = self.grid, self.options.splat_size, self._sampler, self._tangents
-        gaps, triangles = gap_surfels(self.mesh, borders, places, *about)
+        size, sampler = self.options.splat_size, self._sampler
+        gaps, triangles = gap_surfels(self.mesh, borders, places, self.grid, size, sampler, self._tangents)
         if bends is not None and gaps:
             gaps["blend_depth"] = blend_depths(*(of[triangles] for of in bends), gaps["scales"].max(axis=1))
         if self._bulges is not None and gaps:

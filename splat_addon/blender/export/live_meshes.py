@@ -430,12 +430,11 @@ def _by_itself(live: LiveMesh, pixels: float, depsgraph) -> float:
     mesh = live.whole
     if live.surface is None or live.surface[0] is not mesh:
         live.surface = mesh, outline(mesh)
-    shape = projected_area(mesh), grid_spacing(mesh, resolution=1)
     # The detail is already in the pixels, but it also counts if no camera sees the mesh.
-    what, detail = (pixels * live.detail, lambda: live.surface[1], *shape), live.detail
-    matrices = most_demanding(what[0], live.surface[1], live.matrices, depsgraph)
-    found = (automatic_spacing(*what, matrix, depsgraph, detail=detail).spacing for matrix in matrices)
-    return live.kept_if_near(min(found))
+    asked, surface = pixels * live.detail, live.surface[1]
+    spacing = partial(automatic_spacing, asked, lambda: surface, projected_area(mesh), grid_spacing(mesh, resolution=1))
+    matrices = most_demanding(asked, surface, live.matrices, depsgraph)
+    return live.kept_if_near(min(spacing(matrix, depsgraph, detail=live.detail).spacing for matrix in matrices))
 
 
 #: kind of density -> function of a mesh, the number and the depsgraph that returns the spacing

@@ -38,8 +38,17 @@ def _density_of(sources, extent: Extent, asked: Choices, depsgraph) -> tuple[dic
     detail, frame = detail_of(sources[0]), frame_of(sources[0], asked.in_world_units)
     if "automatic" not in asked.density:
         return without_camera(finer(asked.density, detail), lambda: extent.surface, frame, depsgraph), None
-    what = asked.density["automatic"], lambda: extent.surface, extent.area, extent.longest_edge
-    spacing, reason = automatic_spacing(*what, frame, depsgraph, sources, detail, extent.flat.saved)
+    spacing, reason = automatic_spacing(
+        asked.density["automatic"],
+        lambda: extent.surface,
+        extent.area,
+        extent.longest_edge,
+        frame,
+        depsgraph,
+        sources,
+        detail,
+        extent.flat.saved,
+    )
     return {"spacing": spacing}, reason
 
 

@@ -44,13 +44,17 @@ def plan(
     history: what earlier pictures have left behind; None for a picture that is the same whatever was drawn before it.
     around: a camera that sees all that the cameras of several samples see, if the plan is for all of them.
     """
-    about = is_added_up, samples or settings.samples, history or no_history(scene), around or camera
-    planning = Planning(scene, camera, settings, viewers or Viewers(camera, (camera,)), *about)
-    if settings.multisampling and planning.method.rasterizer != "object_space":
-        raise ValueError(
-            f"Method {planning.method.name} filters in screen space, where hardware multisampling has no effect; set "
-            "multisampling to 0 and use supersampling, or method quad."
-        )
+    planning = Planning(
+        scene,
+        camera,
+        settings,
+        viewers=viewers or Viewers(camera, (camera,)),
+        is_added_up=is_added_up,
+        samples=samples or settings.samples,
+        history=history or no_history(scene),
+        around=around or camera,
+    )
+    _check_multisampling(planning)
     found = [p for passes in PASSES for p in passes(planning)]
     present = [parts for parts, is_present in PARTS if is_present(planning)]
     live = {texture for read_back in READ_BACK for texture in read_back(planning)}
@@ -78,6 +82,14 @@ def plan(
     for check in CHECKS:
         check(made)
     return made
+
+
+def _check_multisampling(planning: Planning) -> None:
+    if planning.settings.multisampling and planning.method.rasterizer != "object_space":
+        raise ValueError(
+            f"Method {planning.method.name} filters in screen space, where hardware multisampling has no effect; set "
+            "multisampling to 0 and use supersampling, or method quad."
+        )
 
 
 def _choices(settings: Settings) -> tuple[tuple[str, str], ...]:

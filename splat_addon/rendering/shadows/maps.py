@@ -146,8 +146,18 @@ def _needed(
             corners = casters.world_corners
             block = sees(camera, corners) & in_the_way(light, texel_of(camera), seen, spread, corners)
             if block.any():
-                about = are_faces, side < resolution, used_texels(camera, one), casters.taken(block), casters
-                found.append(ShadowMap(number, camera, (0, 0), *about))
+                found.append(
+                    ShadowMap(
+                        number,
+                        camera,
+                        place=(0, 0),
+                        is_face=are_faces,
+                        is_smaller=side < resolution,
+                        used=used_texels(camera, one),
+                        casters=casters.taken(block),
+                        around=casters,
+                    )
+                )
     return found
 
 

@@ -71,8 +71,8 @@ def clippings(
     at_centres: whether they lie at the centres of cells. times: how often they may become smaller (`overhang`), in
     place in `arrays`.
     """
-    about = arrays, borders, _across(borders), times
-    jobs = (partial(_clippings, meet, *about) for meet in meetings(arrays, images, borders, grid, at_centres))
+    clip = partial(_clippings, arrays=arrays, borders=borders, across=_across(borders), times=times)
+    jobs = (partial(clip, meet) for meet in meetings(arrays, images, borders, grid, at_centres))
     return (part for parts in in_order(jobs) for part in parts)
 
 

@@ -69,8 +69,8 @@ def gap_surfels(
             break
         before = sum(map(len, triangles))
         triangles.append(borders.triangles[side])
-        about = grid, splat_size * float(SMALLER) ** (TIMES - times), sampler, tangents
-        made.append(_surfels(mesh, triangles[-1], at, borders.normals[side], *about))
+        size = splat_size * float(SMALLER) ** (TIMES - times)
+        made.append(_surfels(mesh, triangles[-1], at, borders.normals[side], grid, size, sampler, tangents))
         for part in clippings(made[-1], by_facing(made[-1]), borders, grid, at_centres=False, times=times):
             places.cover(part)
             parts.append(replace(part, surfels=part.surfels + before))
