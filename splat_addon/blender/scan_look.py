@@ -10,7 +10,7 @@ import numpy as np
 from mathutils import Vector
 
 from ..rendering.presets import SCAN_LOOK
-from .ids import ENGINE, OBJECT_SETTINGS, RENDER_SETTINGS
+from .ids import ENGINE, ENGINE_LABEL, OBJECT_SETTINGS, RENDER_SETTINGS
 from .properties import set_eye_dome
 
 #: Display values as the scanner's camera had them.
@@ -22,17 +22,26 @@ _FROM = Vector((0.45, -1.0, 0.65)).normalized()
 #: Share of the points that a camera need not show, and points that are looked at to place it.
 _ASIDE, _MOST = 0.002, 100_000
 
+#: Focal length in millimetres of a camera in a room, and directions in which it looks for the farthest wall.
+_WIDE, _SECTORS = 20.0, 24
+
 #: Share of the picture that stays free around a scan.
 _ROOM = 0.08
 
 
-def give_scan_look(scene: bpy.types.Scene) -> None:
-    """Let a scene show scans as they were captured: with this engine, without any light."""
+def give_scan_look(scene: bpy.types.Scene) -> str:
+    """Let a scene show scans as they were captured: with this engine, without any light. Returns a sentence about what
+    was chosen."""
     scene.render.engine = ENGINE
-    scene.view_settings.view_transform = VIEW_TRANSFORM
+    try:
+        scene.view_settings.view_transform = VIEW_TRANSFORM
+        transform = f"view transform {VIEW_TRANSFORM}"
+    except TypeError:  # a configuration of OpenColorIO that lacks it
+        transform = f"view transform {scene.view_settings.view_transform}, as there is no {VIEW_TRANSFORM}"
     settings = getattr(scene, RENDER_SETTINGS)
     settings.shading = SCAN_LOOK["shading"]
     set_eye_dome(settings, SCAN_LOOK["eye_dome"])
+    return f"Took the look of scans: {ENGINE_LABEL}, Captured Color, Eye-Dome Lighting, {transform}"
 
 
 def color_without_colors(made: bpy.types.Object, attributes: dict[str, np.ndarray]) -> None:
@@ -42,22 +51,51 @@ def color_without_colors(made: bpy.types.Object, attributes: dict[str, np.ndarra
     getattr(made, OBJECT_SETTINGS).color_by = "INTENSITY" if has_intensity else "HEIGHT"
 
 
-def add_camera(context: bpy.types.Context, made: bpy.types.Object, positions: np.ndarray) -> None:
-    """Give a scene without a camera one that sees a new object from above the front, and a world if it has none.
-    positions: (N, 3) in the object's space."""
+def add_camera(
+    context: bpy.types.Context, made: bpy.types.Object, positions: np.ndarray, scanner: np.ndarray | None = None
+) -> None:
+    """Give a scene without a camera one that sees a new object, and a world if it has none: from above the front, or
+    from the scanner's place if that is among the points, as in a room.
+
+    positions: (N, 3) in the object's space. scanner: (3,) its place in the world, if it is known.
+    """
     scene, matrix = context.scene, np.array(made.matrix_world, np.float64)
     if scene.world is None:
         scene.world = bpy.data.worlds.new("World")
     data = bpy.data.cameras.new("Scan")
     camera = bpy.data.objects.new("Scan", data)
-    turned = _FROM.to_track_quat("Z", "Y")
     some = positions[:: max(len(positions) // _MOST, 1)].astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
+    low, high = np.quantile(some, (_ASIDE, 1 - _ASIDE), axis=0)
+    extent = float(np.linalg.norm(high - low))
+    if scanner is not None and ((low < scanner) & (scanner < high)).all():
+        data.lens = _WIDE
+        data.clip_start, data.clip_end = extent / 1e4, 10 * extent
+        camera.location = scanner
+        camera.rotation_euler = _along_the_farthest(some - scanner).to_track_quat("-Z", "Y").to_euler()
+    else:
+        _stand_in_front(scene, camera, some)
+    scene.collection.objects.link(camera)
+    scene.camera = camera
+
+
+def _along_the_farthest(seen: np.ndarray) -> Vector:
+    """The level direction in which a scanner saw farthest. seen: (n, 3) points around it."""
+    ahead = np.arctan2(seen[:, 1], seen[:, 0])
+    sectors = np.floor(ahead / (2 * np.pi) * _SECTORS).astype(int) % _SECTORS
+    counts = np.bincount(sectors, minlength=_SECTORS)
+    distances = np.bincount(sectors, np.hypot(seen[:, 0], seen[:, 1]), _SECTORS) / np.maximum(counts, 1)
+    wide = distances + np.roll(distances, 1) + np.roll(distances, -1)
+    angle = (float(np.argmax(wide)) + 0.5) / _SECTORS * 2 * math.pi
+    return Vector((math.cos(angle), math.sin(angle), 0.0))
+
+
+def _stand_in_front(scene: bpy.types.Scene, camera: bpy.types.Object, some: np.ndarray) -> None:
+    """Place a camera so that it sees these points, (n, 3)."""
+    data, turned = camera.data, _FROM.to_track_quat("Z", "Y")
     seen = some @ np.array(turned.to_matrix(), np.float64)  # across, up and towards the camera
     middle = np.quantile(seen, (_ASIDE, 1 - _ASIDE), axis=0).mean(axis=0)
-    wide, tall = (
-        scene.render.resolution_x * scene.render.pixel_aspect_x,
-        scene.render.resolution_y * scene.render.pixel_aspect_y,
-    )
+    wide = scene.render.resolution_x * scene.render.pixel_aspect_x
+    tall = scene.render.resolution_y * scene.render.pixel_aspect_y
     half = math.tan(data.angle / 2) * (1 - _ROOM) * np.array((wide, tall)) / max(wide, tall)
     from_middle = seen - middle
     needed = from_middle[:, 2] + (np.abs(from_middle[:, :2]) / half).max(axis=1)
@@ -65,5 +103,3 @@ def add_camera(context: bpy.types.Context, made: bpy.types.Object, positions: np
     data.clip_start, data.clip_end = distance / 1000, 100 * distance
     camera.location = turned @ Vector(middle) + distance * _FROM
     camera.rotation_euler = turned.to_euler()
-    scene.collection.objects.link(camera)
-    scene.camera = camera

@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import bpy
+import numpy as np
 from mathutils import Matrix
 
 from ...doubts import doubts
@@ -38,7 +39,7 @@ class FileImport:
         self._keywords, self._flatness, self._colors = keywords(properties), properties.flatness, float_colors
         self._eye, self._offset = viewpoint(properties, context), scene_offset(context.scene)
         self._attributes, self._rows = {}, None
-        self._is_captured, self._has_colors = True, True
+        self._is_captured, self._has_colors, self._scanner = True, True, None
         self.share, self.points, self.is_cancelled = 0.0, 0, False
         self.notes: list[str] = []
 
@@ -83,6 +84,8 @@ class FileImport:
         )
         self._attributes, self._rows = points.attributes, report.kept
         self._has_colors = points.colors is not None
+        if scanners is not None:  # the first place that is known
+            self._scanner = next(iter(scanners[np.isfinite(scanners).all(axis=1)])) - self._offset
         self.notes += [*report.notes(), *points.said]
         if scanners is not None and report.estimated_normals:
             self.notes.append("Took the places of scanners from the file, so that normals face them")
@@ -108,10 +111,9 @@ class FileImport:
         if not self._has_colors:
             color_without_colors(made, self._attributes)
         if not any(is_surfel_object(each) for each in context.scene.objects if each != made):
-            give_scan_look(context.scene)
-            self.notes.append("Took the look of scans, see Render Properties: Captured Color and Eye-Dome Lighting")
+            self.notes.append(give_scan_look(context.scene))
         if context.scene.camera is None:
-            add_camera(context, made, self.surfels.positions)
+            add_camera(context, made, self.surfels.positions, self._scanner)
 
     def status(self) -> str:
         """What the status bar shows."""

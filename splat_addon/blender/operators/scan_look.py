@@ -20,7 +20,7 @@ class RENDER_OT_surfel_scan_look(bpy.types.Operator):
     bl_options = frozenset({"REGISTER", "UNDO"})
 
     def execute(self, context):
-        give_scan_look(context.scene)
+        self.report({"INFO"}, give_scan_look(context.scene))
         return {"FINISHED"}
 
 

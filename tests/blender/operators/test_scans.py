@@ -103,6 +103,10 @@ def test_normals_face_the_scanner_that_the_file_names(surfels_of, tmp_path):
     surfels = surfels_of(bpy.context.object)
     inward = matrix[:3, 3] - scene_offset(bpy.context.scene) - bpy.context.object.location - surfels.positions
     assert (np.einsum("ij,ij->i", surfels.normals, inward) > 0.5).all()
+    # and the camera stands where the scanner did
+    camera = bpy.context.scene.camera
+    assert np.abs(scene_offset(bpy.context.scene) + camera.location - matrix[:3, 3]).max() < 1e-4
+    assert abs(camera.matrix_basis.to_3x3().col[2].z) < 1e-6
 
 
 def test_the_first_scan_of_a_scene_gets_the_look_of_scans_and_a_camera_that_sees_it(imported):
