@@ -13,21 +13,23 @@ from ..geometry.attributes import has_surfels, read_field
 from ..ids import POINT_ATTRIBUTES, SELECT_STRAYS
 from ..spoken import said
 
-#: What was found last, so that another strength needs no search: positions, radii, how stray they are.
-_last: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
+#: What was found last, so that another strength needs no search: what was looked at, and how stray it is.
+_last: tuple[tuple[np.ndarray, ...], np.ndarray] | None = None
+
+_FIELDS = "positions", "scales", "normals"
 
 
 def _how_stray(mesh: bpy.types.Mesh) -> np.ndarray:
     """(N,) `strayness` of the surfels of a mesh, whose unusable ones are as stray as can be."""
     global _last
-    positions, scales = (read_field(mesh, POINT_ATTRIBUTES[name], mesh.name) for name in ("positions", "scales"))
-    radii = scales[:, :2].max(axis=1, initial=0.0)
-    if _last is None or not (np.array_equal(_last[0], positions) and np.array_equal(_last[1], radii)):
-        found = np.full(len(positions), np.inf)
-        is_usable = np.isfinite(positions).all(axis=1) & np.isfinite(radii) & (radii > 0)
-        found[is_usable] = strayness(positions[is_usable], radii[is_usable])
-        _last = positions, radii, found
-    return _last[2]
+    given = tuple(read_field(mesh, POINT_ATTRIBUTES[name], mesh.name) for name in _FIELDS)
+    if _last is None or not all(map(np.array_equal, _last[0], given)):
+        positions, scales, normals = given
+        radii, found = scales[:, :2].max(axis=1, initial=0.0), np.full(len(positions), np.inf)
+        is_usable = np.isfinite(np.hstack(given)).all(axis=1) & (scales[:, :2] > 0).all(axis=1)
+        found[is_usable] = strayness(positions[is_usable], radii[is_usable], normals[is_usable])
+        _last = given, found
+    return _last[1]
 
 
 class OBJECT_OT_surfels_select_strays(bpy.types.Operator):
