@@ -18,8 +18,7 @@ def show_one(made: bpy.types.Object, view_layer: bpy.types.ViewLayer) -> None:
 
 
 def _is_shown(source: bpy.types.Object, view_layer: bpy.types.ViewLayer) -> bool:
-    is_there = source.name in view_layer.objects
-    return is_there and not source.hide_render and source.visible_get(view_layer=view_layer)
+    return not source.hide_render and source.visible_get(view_layer=view_layer)
 
 
 @unattended("Showing surfels to other engines")

@@ -117,14 +117,17 @@ def sources_in(scene: bpy.types.Scene, shows: Callable[[bpy.types.Object], bool]
 def stood_in(depsgraph: bpy.types.Depsgraph) -> set[bpy.types.Object]:
     """The sources that surfels replace in a view or a render: of those in the scene, whose surfels are not hidden."""
 
+    there: set[str] = set()
+
     def shows(made: bpy.types.Object) -> bool:
         shown = made.evaluated_get(depsgraph)
-        # an excluded collection's objects are evaluated too if they are parents
-        if not shown.is_evaluated or made.name not in depsgraph.view_layer.objects:
+        if not shown.is_evaluated:
             return False
-        if depsgraph.mode == "RENDER":
-            return not shown.hide_render
-        return shown.visible_get(view_layer=depsgraph.view_layer_eval)
+        if depsgraph.mode != "RENDER":
+            return shown.visible_get(view_layer=depsgraph.view_layer_eval)
+        # an excluded collection's objects are evaluated too if they are parents; Blender finds a name by looking at all
+        there.update(there or depsgraph.view_layer.objects.keys())
+        return not shown.hide_render and made.name in there
 
     return sources_in(depsgraph.scene.original, shows)
 

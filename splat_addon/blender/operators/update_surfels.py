@@ -21,10 +21,13 @@ from .menu_entry import with_menu_entry
 
 def updatable(context: bpy.types.Context) -> list[bpy.types.Object]:
     """The selected surfel objects that know their sources, and those of this view layer whose source is selected."""
-    there, found = context.view_layer.objects, {}
+    found = {}
     for selected in context.selected_objects:
-        made = [selected] if selected.type == "MESH" and sources_of(selected) else surfels_of(selected)
-        found.update({each: None for each in made if each.name in there})
+        if selected.type == "MESH" and sources_of(selected):
+            found[selected] = None
+        else:  # in another view layer, objects are neither visible nor hidden
+            made = (each for each in surfels_of(selected) if each.visible_get() or each.hide_get())
+            found.update(dict.fromkeys(made))
     return list(found)
 
 
