@@ -2,16 +2,18 @@
 """Turns mixed and added shaders, and those without a diffuse colour such as Glass, into colours that Cycles can bake.
 
 A tree of shaders becomes a tree of colours of the same shape, once for each channel of surfels: Mix Shader mixes them,
-Add Shader adds them, and each leaf shader supplies its own. Transmitted light adds up, so opacity is 1 minus the
-transmitted share, and colours are weighted by their shader's coverage.
+Add Shader adds them, and each leaf shader supplies its own (`mixed_leaves`). Opacity is 1 minus the transmitted share.
 """
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import bpy
 
+from .mixed_leaves import LEAVES
 from .node_walks import linked, passed_through_link, within
-from .surface_shaders import CLEAR, SHADERS, Shader, parts
+from .surface_shaders import CLEAR, Shader, parts
 
 Node = bpy.types.Node
 Tree = bpy.types.NodeTree
@@ -66,7 +68,7 @@ def _of_one(tree: Tree, shader: Node, channel: str, made: dict[Node, Given]) -> 
         if shader.type == "ADD_SHADER":
             return _mixed(tree, "ADD", first, second)
         return _mixed(tree, "MIX", first, second, shader.inputs[0])
-    return _ENDS[channel](tree, shader)
+    return LEAVES[channel](_Sockets(tree, shader))
 
 
 def _out_of_group(group: Node, channel: str, made: dict[Node, Given]) -> Given:
@@ -89,31 +91,23 @@ def _source(socket: Socket) -> Node | None:
     return source and source[0]
 
 
-def _color(tree: Tree, end: Node) -> Given:
-    if end.type in CLEAR or end.type == "EMISSION":
-        return _BLACK
-    if end.type == "BSDF_PRINCIPLED":
-        return _mixed(tree, "MULTIPLY", _given(end.inputs["Base Color"]), _given(end.inputs["Alpha"]))
-    color = end.inputs.get("Color") or end.inputs.get("Base Color")
-    return (0.8, 0.8, 0.8) if color is None else _given(color)
+class _Sockets(NamedTuple):
+    """`mixed_leaves.Terms` of a shader as sockets of new nodes."""
 
+    tree: Tree
+    node: Node
+    black: Given = _BLACK
+    white: Given = _WHITE
+    grey: Given = (0.8, 0.8, 0.8)
 
-def _let_through(tree: Tree, end: Node) -> Given:
-    if end.type == "BSDF_PRINCIPLED":
-        return _mixed(tree, "SUBTRACT", _WHITE, _given(end.inputs["Alpha"]))
-    return _WHITE if end.type in CLEAR else _BLACK
+    def read(self, name: str) -> Given:
+        return _given(self.node.inputs[name])
 
+    def product(self, a: Given, b: Given) -> Given:
+        return _mixed(self.tree, "MULTIPLY", a, b)
 
-def _emission(tree: Tree, end: Node) -> Given:
-    names = SHADERS.get(end.bl_idname, {}).get("emission")
-    if names is None:
-        return _BLACK
-    sent = _mixed(tree, "MULTIPLY", *(_given(end.inputs[name]) for name in names))
-    return _mixed(tree, "MULTIPLY", sent, _given(end.inputs["Alpha"])) if end.type == "BSDF_PRINCIPLED" else sent
-
-
-#: channel -> what a leaf shader supplies; for the opacity, what it transmits
-_ENDS = {"color": _color, "opacity": _let_through, "emission": _emission}
+    def rest(self, share: Given) -> Given:
+        return _mixed(self.tree, "SUBTRACT", _WHITE, share)
 
 
 def _given(socket: Socket) -> Given:

@@ -1,22 +1,25 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reads a tree of mixed and added shaders as graphs of its colour, opacity and emission.
 
-The rules are those of `shader_mixes`, with steps instead of nodes: Mix Shader mixes by its factor, Add Shader adds, and
-each leaf supplies its own. Transmitted light adds up, and colours are weighted by their shader's coverage.
+As in `shader_mixes`, which makes nodes instead of steps, Mix Shader mixes by its factor, Add Shader adds, and each leaf
+supplies its own (`mixed_leaves`).
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import ClassVar
+
+import bpy
+
 from ..mesh_layers import MeshLayers
-from ..surface_shaders import CLEAR, SHADERS, Shader, mixed_sockets
+from ..mixed_leaves import LEAVES
+from ..surface_shaders import Shader, mixed_sockets
 from ..texture_images import UnreadableError
 from .channels import ReadGraph, limited
 from .reading import GraphReading, Value
 
 _ZERO, _ONE = Value((0.0,)), Value((1.0,))
-
-#: What a shader without a colour socket looks like.
-_GREY = Value((0.8,))
 
 
 def read_mixed(shader: Shader, name: str, layers: MeshLayers) -> ReadGraph:
@@ -45,7 +48,7 @@ def _combined(reading: GraphReading, shader: Shader | None, name: str, made: dic
 def _of_one(reading: GraphReading, shader: Shader, name: str, made: dict[Shader, Value]) -> Value:
     sockets = mixed_sockets(shader)
     if sockets is None:
-        return _LEAVES[name](reading.inside(shader.groups), shader)
+        return LEAVES[name](_Steps(reading.inside(shader.groups), shader))
     parts = [_combined(reading, shader.feeding(socket), name, made) for socket in sockets]
     if len(parts) < 2:
         return parts[0] if parts else _ZERO
@@ -59,43 +62,33 @@ def _of_one(reading: GraphReading, shader: Shader, name: str, made: dict[Shader,
     return reading.add("mixed", share, *parts, settings=(True,), width=width, is_color=width == 3)
 
 
-def _alpha(reading: GraphReading, shader: Shader) -> Value:
-    return limited(reading, shader, "Alpha") if shader.node.type == "BSDF_PRINCIPLED" else _ONE
+@dataclass(frozen=True)
+class _Steps:
+    """`mixed_leaves.Terms` of a shader as steps of a graph."""
 
+    reading: GraphReading
+    shader: Shader
+    black: ClassVar[Value] = _ZERO
+    white: ClassVar[Value] = _ONE
+    grey: ClassVar[Value] = Value((0.8,))
 
-def _covering(reading: GraphReading, shader: Shader, value: Value) -> Value:
-    return reading.color("multiplied", reading.three(value, True), _alpha(reading, shader))
+    @property
+    def node(self) -> bpy.types.Node:
+        return self.shader.node
 
+    def read(self, name: str) -> Value:
+        """An input, or the plain value of its socket if nothing of it can be read. Raises UnreadableError for what
+        covers, because that decides what is seen."""
+        try:
+            return limited(self.reading, self.shader, name)
+        except UnreadableError as error:
+            if name == "Alpha":
+                raise
+            self.reading.doubts.setdefault(str(error), "the plain value of its socket is used")
+            return self.reading.constant(self.shader.socket(name))
 
-def _color(reading: GraphReading, shader: Shader) -> Value:
-    if shader.node.type in CLEAR or shader.node.type == "EMISSION":
-        return _ZERO
-    name = next((name for name in ("Color", "Base Color") if name in shader.node.inputs), None)
-    return _covering(reading, shader, _GREY if name is None else _read(reading, shader, name))
+    def product(self, a: Value, b: Value) -> Value:
+        return self.reading.color("multiplied", self.reading.three(a, True), b)
 
-
-def _emission(reading: GraphReading, shader: Shader) -> Value:
-    names = SHADERS.get(shader.node.bl_idname, {}).get("emission")
-    if names is None:
-        return _ZERO
-    color, strength = (_read(reading, shader, name) for name in names)
-    return _covering(reading, shader, reading.color("multiplied", reading.three(color, True), strength))
-
-
-def _let_through(reading: GraphReading, shader: Shader) -> Value:
-    if shader.node.type == "BSDF_PRINCIPLED":
-        return reading.add("invert", _ONE, _alpha(reading, shader))
-    return _ONE if shader.node.type in CLEAR else _ZERO
-
-
-def _read(reading: GraphReading, shader: Shader, name: str) -> Value:
-    """An input, or the plain value of its socket if nothing of it can be read."""
-    try:
-        return limited(reading, shader, name)
-    except UnreadableError as error:
-        reading.doubts.setdefault(str(error), "the plain value of its socket is used")
-        return reading.constant(shader.socket(name))
-
-
-#: channel -> what a leaf shader supplies; for the opacity, what it transmits
-_LEAVES = {"color": _color, "opacity": _let_through, "emission": _emission}
+    def rest(self, share: Value) -> Value:
+        return self.reading.add("invert", _ONE, share)
