@@ -25,6 +25,9 @@ _ASIDE, _MOST = 0.002, 100_000
 #: Focal length in millimetres of a camera in a room, and directions in which it looks for the farthest wall.
 _WIDE, _SECTORS = 20.0, 24
 
+#: How many times as far as a scan reaches 3D views show.
+_VIEWS = 5.0
+
 #: Share of the picture that stays free around a scan.
 _ROOM = 0.08
 
@@ -76,6 +79,17 @@ def add_camera(
         _stand_in_front(scene, camera, some)
     scene.collection.objects.link(camera)
     scene.camera = camera
+
+
+def widen_views(context: bpy.types.Context, made: bpy.types.Object, positions: np.ndarray) -> None:
+    """Let all 3D views show an object from outside, of which their clip end would show only a part. positions: as of
+    `add_camera`."""
+    reach = float(np.abs(positions).max(initial=0.0)) * max(made.matrix_world.to_scale())
+    needed = _VIEWS * (made.matrix_world.translation.length + reach)
+    spaces = (space for w in context.window_manager.windows for area in w.screen.areas for space in area.spaces)
+    for space in spaces:
+        if space.type == "VIEW_3D":
+            space.clip_end = max(space.clip_end, needed)
 
 
 def _along_the_farthest(seen: np.ndarray) -> Vector:

@@ -18,7 +18,7 @@ from ...surfels import Surfels
 from ..geometry.scan_attributes import write_scan_attributes
 from ..geometry.scene_offset import keep_offset, offset_for_scan, scene_offset, taken_from
 from ..geometry.sources import is_surfel_object
-from ..scan_look import add_camera, color_without_colors, give_scan_look
+from ..scan_look import add_camera, color_without_colors, give_scan_look, widen_views
 from ..spoken import said
 from ..working_space import surfels_from_rec709
 from .points_settings import PointsProperties, keywords, viewpoint
@@ -112,6 +112,7 @@ class FileImport:
             color_without_colors(made, self._attributes)
         if not any(is_surfel_object(each) for each in context.scene.objects if each != made):
             self.notes.append(give_scan_look(context.scene))
+        widen_views(context, made, self.surfels.positions)
         if context.scene.camera is None:
             add_camera(context, made, self.surfels.positions, self._scanner)
 

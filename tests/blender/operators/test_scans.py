@@ -139,6 +139,18 @@ def test_without_intensity_a_scan_without_colors_shows_its_height_and_with_color
     assert [each.surfel_splatting.color_by for each in bpy.data.objects if each.type == "MESH"] == ["HEIGHT", "COLOR"]
 
 
+def test_views_show_all_of_a_large_scan(tmp_path):
+    """Views of what is small keep what they have."""
+    (view,) = (a.spaces.active for a in bpy.context.window.screen.areas if a.type == "VIEW_3D")
+    before = view.clip_end
+    for name, size in (("small.xyz", 1.0), ("large.xyz", 3000.0)):
+        rows = (f"{x * size} {y * size} 0" for x in range(5) for y in range(5))
+        (tmp_path / name).write_text("\n".join(rows))
+        bpy.ops.import_scene.surfels_ply(filepath=str(tmp_path / name), isolated="KEEP")
+        assert (view.clip_end == before) == (name == "small.xyz")
+    assert view.clip_end > 2 * 12000
+
+
 def test_without_the_look_an_import_changes_nothing_of_the_scene(imported):
     before = bpy.context.scene.render.engine
     made, _ = imported(CORNERS[0], has_scan_look=False)
