@@ -201,6 +201,12 @@ def test_the_folders_of_sampling_are_in_floors():
     assert wrong == []
 
 
+def test_conversion_knows_nothing_of_export():
+    files = [f for f in FILES if f.is_relative_to(PACKAGE / "blender" / "conversion")]
+    there = {resolved(file, level, name)[:2] for file in files for level, name in imports(file) if level}
+    assert files and ("blender", "export") not in there
+
+
 def test_no_import_within_a_function_hides_a_circle():
     late = {
         f"{file.relative_to(PACKAGE).as_posix()}: {node.name}"

@@ -15,7 +15,7 @@ import pytest
 
 from splat_addon import blender
 from splat_addon.blender import ids
-from splat_addon.blender.export.camera import PANORAMA_PROPERTIES
+from splat_addon.blender.cameras import PANORAMA_PROPERTIES
 from splat_addon.blender.mesh_sampling_settings import NUMBERED
 from splat_addon.blender.ui import render_panels
 
@@ -44,8 +44,8 @@ TABS = {
 #: kind of data -> the modules that read it to draw a picture
 READERS = {
     "light": ("export/shading",),
-    "camera": ("export/camera",),
-    "render": ("export/camera", "engine/final_render", "engine/motion_blur", "properties"),
+    "camera": ("cameras",),
+    "render": ("cameras", "engine/final_render", "engine/motion_blur", "properties"),
     "view layer": (
         "engine/final_render",
         "engine/motion_blur",

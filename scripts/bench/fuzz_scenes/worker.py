@@ -26,9 +26,9 @@ except ImportError:  # on Windows
 import splat_addon
 from environment.leaving import run_and_leave
 from splat_addon.blender import doors
+from splat_addon.blender.cameras import final_camera
 from splat_addon.blender.engine import final_render
 from splat_addon.blender.engine.render_passes import outputs_of
-from splat_addon.blender.export.camera import final_camera
 from splat_addon.blender.export.live_meshes import LiveMeshes
 from splat_addon.blender.export.scene import SurfelStore, export_scene
 from splat_addon.blender.properties import final_settings, viewport_settings

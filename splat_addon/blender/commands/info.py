@@ -12,7 +12,7 @@ import bpy
 
 from ...streaming import described
 from ...streaming.layout import SUFFIX
-from ..export.camera import picture_size
+from ..cameras import picture_size
 from ..geometry.attributes import has_surfels
 from ..geometry.sources import has_surfaces
 from ..ids import ENGINE

@@ -14,8 +14,8 @@ import bpy
 from ...claims import claimed, remove_leftovers
 from ...rendering.assembly.frame_parts import joined_parts
 from ...sampling import joined_blocks, read_block, read_request
+from ..cameras import picture_size
 from ..engine import final_render
-from ..export.camera import picture_size
 from .convert import (
     add_blocks_argument,
     batch_of,

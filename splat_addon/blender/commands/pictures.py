@@ -11,7 +11,7 @@ from pathlib import Path
 
 import bpy
 
-from ..export.camera import picture_size, rendered_part
+from ..cameras import picture_size, rendered_part
 from ..ids import ENGINE
 from ..operators.file_paths import absolute
 from .out_paths import path_at

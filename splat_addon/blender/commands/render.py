@@ -15,8 +15,8 @@ from ...claims import claimed
 from ...rendering import Frame
 from ...rendering.assembly.frame_parts import Part, write_part
 from ...whole_files import unfinished
+from ..cameras import picture_size
 from ..engine import final_render
-from ..export.camera import picture_size
 from .out_paths import made_room
 from .pictures import (
     add_picture_arguments,

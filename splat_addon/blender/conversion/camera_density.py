@@ -12,7 +12,7 @@ from mathutils import Matrix
 from ...rendering import Camera, Panorama
 from ...rendering.assembly.panorama_faces import cube_views
 from ...sampling import NotSeenError, Outline, camera_spacing, least_camera_spacings
-from ..export.camera import final_camera
+from ..cameras import final_camera
 
 
 def without_camera(

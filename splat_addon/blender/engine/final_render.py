@@ -13,8 +13,8 @@ import bpy
 
 from ...faults import is_worded, sentence_of
 from ...rendering import Frame, RenderCancelled, Renderer, open_device
+from ..cameras import depth_of_field_notes, rendered_part, view_camera
 from ..doors import unattended, with_handlers
-from ..export.camera import depth_of_field_notes, rendered_part, view_camera
 from ..export.live_meshes import LiveMeshes
 from ..export.notes import Notes
 from ..export.scene import SurfelStore, export_scene

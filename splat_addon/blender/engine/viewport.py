@@ -14,8 +14,8 @@ import bpy
 
 from ...faults import sentence_of
 from ...rendering import Arrival, Pace, Refinement, Renderer, Shown, open_device
+from ..cameras import viewport_camera
 from ..doors import unattended
-from ..export.camera import viewport_camera
 from ..export.live_meshes import LiveMeshes
 from ..export.scene import export_scene
 from ..export.sliced_store import SlicedStore

@@ -47,10 +47,10 @@ from ..geometry.sources import mesh_key
 from ..geometry.split_meshes import MeshParts, parts_by_group
 from ..materials.surface_textures import kept_normal_maps, kept_textures
 from ..mesh_sampling_settings import Form
+from ..object_detail import finer
 from . import passed_over
 from .holdouts import held_slots, with_holes
 from .notes import Notes
-from .object_detail import finer
 from .shading import shading_material
 from .styles import OF_MATERIALS, ObjectStyle
 

@@ -40,13 +40,13 @@ from ..ids import OBJECT_SETTINGS, POINT_ATTRIBUTES
 from ..materials.material_override import overridden, override_of
 from ..materials.surface_textures import TextureStore
 from ..mesh_sampling_settings import Form, density_of_meshes, form_of, looks_of_meshes
+from ..object_detail import detail_of
 from . import passed_over
 from .entries import kind_of, matrices_of
 from .holdouts import held_slots, with_holes
 from .light_linking import LightSets
 from .live_meshes import LiveMesh, LiveMeshes, Manner, Place
 from .notes import Notes
-from .object_detail import detail_of
 from .scan_colors import Column, painter
 from .shading import light_of, shading_material
 from .streams import Streams, not_followed

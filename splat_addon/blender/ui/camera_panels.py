@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import bpy
 
+from ..cameras import PANORAMA_PROPERTIES
 from ..doors import register_classes_factory
-from ..export.camera import PANORAMA_PROPERTIES
 from .engine_panel import EnginePanel
 
 

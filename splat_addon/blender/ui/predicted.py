@@ -13,7 +13,7 @@ from ..conversion.density_reason import Reason, sentences
 from ..conversion.gathering import frame_of, groups
 from ..conversion.mesh_conversion import Choices
 from ..conversion.prediction import Extent, known_extents
-from ..export.object_detail import detail_of, finer
+from ..object_detail import detail_of, finer
 from ..spoken import said
 
 

@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 import pytest
 
-from splat_addon.blender.export.camera import rendered_part
+from splat_addon.blender.cameras import rendered_part
 from splat_addon.blender.geometry.attributes import write_surfels
 from splat_addon.surfels import empty_surfels
 

@@ -9,8 +9,8 @@ from dataclasses import replace
 import bpy
 import numpy as np
 
-from ...faults import sentence_of
-from ...rendering import Camera, EquidistantFisheye, Equirectangular, EquisolidFisheye, Lens, Panorama
+from ..faults import sentence_of
+from ..rendering import Camera, EquidistantFisheye, Equirectangular, EquisolidFisheye, Lens, Panorama
 
 
 def picture_size(render: bpy.types.RenderSettings) -> tuple[int, int]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import bpy
 
-from ..ids import OBJECT_SETTINGS
+from .ids import OBJECT_SETTINGS
 
 #: kind of density -> the power of the detail by which its number changes
 _POWERS = {"resolution": 1, "spacing": -1, "pixels": -1, "automatic": -1, "count": 2}
