@@ -29,8 +29,26 @@ def _tube(vector):
     return np.where(size > 0, np.stack([(1 - np.arctan2(x, y) / np.float32(np.pi)) / 2, z + np.float32(0.5)]), 0)
 
 
+def _equirectangular(vector):
+    x, y, z = vector
+    return np.stack([np.float32(0.5) - np.arctan2(y, x) * _TURN, np.arctan2(z, np.hypot(x, y)) * 2 * _TURN + 0.5])
+
+
+def _mirror_ball(vector):
+    x, y, z = unit(vector)
+    # of the normal that mirrors the view along Y into this direction
+    size = 4 * np.sqrt(np.maximum(np.float32(0.5) * (1 - y), 1e-12))
+    return np.stack([x / size + np.float32(0.5), z / size + np.float32(0.5)])
+
+
 #: projection -> function from (3, n) coordinates to the (2, n) ones of the image
-PROJECTIONS = {"FLAT": _flat, "SPHERE": _sphere, "TUBE": _tube}
+PROJECTIONS = {
+    "FLAT": _flat,
+    "SPHERE": _sphere,
+    "TUBE": _tube,
+    "EQUIRECTANGULAR": _equirectangular,
+    "MIRROR_BALL": _mirror_ball,
+}
 
 
 def image(vectors: list[np.ndarray], image: Image, projection: str) -> np.ndarray:

@@ -4,7 +4,8 @@ sun, and to what the camera sees of it if that differs."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
+from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import bpy
@@ -13,9 +14,13 @@ from mathutils import Euler
 
 from ...rendering import Environment, Scene
 from ...rendering.device.interface import MAX_TEXTURE_EDGE
+from ...rendering.scene.numbers import MAX_RADIANCE
 from ...rendering.scene.sun_apart import sun_apart
+from ..materials.fingerprints import told_of_nodes
+from ..materials.graphs.channels import constant_of
+from ..materials.graphs.worlds import radiance, read_radiance
 from ..materials.node_trees import uses_nodes
-from ..materials.surface_shaders import Part
+from ..materials.surface_shaders import Part, Shader
 from ..materials.texture_images import UnreadableError, fingerprint, linear_pixels, odd_pixels_sentence, settings_of
 from . import passed_over
 from .shading import BLACK, color_times_strength, finite_radiance
@@ -62,7 +67,18 @@ class WorldStore:
         is_hidden = picture is not None and seen_picture is None
         return fields | ({"background": seen, "hides_environment": is_hidden} if is_hidden or seen != light else {})
 
-    def _environment(self, picture: _Picture, notes) -> Environment | None:
+    def _environment(self, picture: _Picture | _Evaluated, notes) -> Environment | None:
+        if isinstance(picture, _Picture):
+            return self._of_image(picture, notes)
+        is_same = self._kept is not None and self._kept.settings == picture and not self._is_doubted
+        if not is_same:
+            self._kept = _Kept(picture, 0, *picture.read())
+        self._is_doubted = False
+        for note in self._kept.notes:
+            notes.add(note)
+        return self._kept.environment
+
+    def _of_image(self, picture: _Picture, notes) -> Environment | None:
         settings = *settings_of(picture.image), picture.rotation.tobytes()
         # Users cannot change pixels between two frames of one render without marking the image dirty.
         is_doubted = self._is_doubted or picture.image.is_dirty
@@ -83,7 +99,7 @@ class WorldStore:
 class _Kept(NamedTuple):
     """notes: about the reading."""
 
-    settings: tuple
+    settings: tuple | _Evaluated
     fingerprint: int
     environment: Environment
     notes: tuple[str, ...]
@@ -112,25 +128,69 @@ def _reduced(pixels: np.ndarray, down: int, across: int) -> np.ndarray:
     return whole.reshape(rows, down, columns, across, 3).mean(axis=(1, 3))
 
 
-def _sum(added: list[Part], world: bpy.types.World, notes) -> tuple[Color, _Picture | None]:
+def _sum(added: list[Part], world: bpy.types.World, notes) -> tuple[Color, _Picture | _Evaluated | None]:
     """The radiance of a sum of backgrounds, and a picture that is multiplied by it if there is one."""
     owner, total = f"The world {world.name!r}", np.zeros(3)
+    if len(added) == 1 and constant_of(added[0].shader, "Strength") is not None:
+        picture = _picture(added[0].shader.socket("Color"))
+        if picture is not None:
+            (strength,) = constant_of(added[0].shader, "Strength")
+            return finite_radiance((added[0].share * strength,) * 3, owner, notes), picture
+    varying = [part for part in added if _varies(part.shader)]
+    if varying and not all(map(_is_unreadable, varying)):
+        shares = tuple(part.share for part in added)
+        return (1.0, 1.0, 1.0), _Evaluated(owner, told_of_nodes(world), shares, [part.shader for part in added])
     for part in added:
-        picture = _picture(part.shader.socket("Color"), world, notes)
-        if picture is None:
-            total += part.share * np.array(color_times_strength(part.shader, owner, notes))
-            continue
-        if len(added) > 1:
-            notes.add(f"{owner} mixes a picture with other backgrounds; only the picture is drawn, with its share")
-        if part.shader.socket("Strength").is_linked:
-            notes.add(f"{owner} has a textured strength; the socket's plain value is used")
-        (strength,) = part.shader.plain("Strength").value
-        return finite_radiance((part.share * strength,) * 3, owner, notes), picture
+        total += part.share * np.array(color_times_strength(part.shader, owner, notes))
     return finite_radiance(tuple(total.tolist()), owner, notes), None
 
 
-def _are_same(a: _Picture | None, b: _Picture | None) -> bool:
-    return a is not None and b is not None and a.image == b.image and np.array_equal(a.rotation, b.rotation)
+def _varies(shader: Shader) -> bool:
+    """Whether it sends out other light in other directions."""
+    return any(shader.socket(name).is_linked and constant_of(shader, name) is None for name in ("Color", "Strength"))
+
+
+def _is_unreadable(part: Part) -> bool:
+    try:
+        read_radiance(part.shader)
+    except UnreadableError:
+        return True
+    return False
+
+
+def _are_same(a, b) -> bool:
+    """Whether two results of `_sum` have the same picture."""
+    if isinstance(a, _Picture) and isinstance(b, _Picture):
+        return a.image == b.image and np.array_equal(a.rotation, b.rotation)
+    return a is not None and a == b
+
+
+@dataclass(frozen=True)
+class _Evaluated:
+    """A picture that nodes make. owner: the subject of a sentence. told: the fingerprint of all nodes. shares: of the
+    shaders that are added."""
+
+    owner: str
+    told: str
+    shares: tuple[float, ...]
+    shaders: list[Shader] = field(compare=False)
+
+    def read(self) -> tuple[Environment, tuple[str, ...]]:
+        """The environment, and notes on what it lacks."""
+        notes, found, read = SimpleNamespace(said={}), 0.0, []
+        notes.add = lambda sentence: notes.said.setdefault(sentence)
+        for share, shader in zip(self.shares, self.shaders, strict=True):
+            try:
+                graph, rows = read_radiance(shader)
+                for reason, used in graph.doubts.items():
+                    notes.add(f"{self.owner} has {reason}; {used}")
+                read.append((share, graph.graph, rows))
+            except UnreadableError:
+                found = found + share * np.array(color_times_strength(shader, self.owner, notes))
+        rows = max(rows for _, _, rows in read)
+        for share, graph, _ in read:
+            found = found + share * radiance(graph, rows)
+        return Environment(np.clip(found, 0, MAX_RADIANCE).astype(np.float32)), tuple(notes.said)
 
 
 class _Picture(NamedTuple):
@@ -140,36 +200,29 @@ class _Picture(NamedTuple):
     rotation: np.ndarray
 
 
-def _picture(socket: bpy.types.NodeSocket, world: bpy.types.World, notes) -> _Picture | None:
-    """The equirectangular image that feeds a colour, possibly rotated by a Mapping node."""
+def _picture(socket: bpy.types.NodeSocket) -> _Picture | None:
+    """The equirectangular image that feeds a colour, rotated by a Mapping node at most; None for anything else, which
+    is evaluated."""
     node = socket.links[0].from_node if socket.is_linked else None
-    if node is None or node.type != "TEX_ENVIRONMENT" or node.image is None:
+    if node is None or node.type != "TEX_ENVIRONMENT" or node.image is None or node.mute:
         return None
     if node.projection != "EQUIRECTANGULAR":
-        notes.add(
-            f"The world {world.name!r} has a picture in {node.projection.title()} projection, which this engine does "
-            "not support; the picture is left out"
-        )
         return None
     rotation = np.eye(3)
     links = node.inputs["Vector"].links
     if links and links[0].from_node.type == "MAPPING":
         mapping = links[0].from_node
+        if mapping.mute or not _only_rotates(mapping):
+            return None
         rotation = np.array(Euler(mapping.inputs["Rotation"].default_value).to_matrix())
         if mapping.vector_type == "TEXTURE":
             rotation = rotation.T
         links = mapping.inputs["Vector"].links
-        _note_unused(mapping, world, notes)
-    if links and not (links[0].from_node.type == "TEX_COORD" and links[0].from_socket.name == "Generated"):
-        notes.add(
-            f"The world {world.name!r} places its picture with more nodes than Mapping and generated coordinates; the "
-            "others are ignored"
-        )
-    return _Picture(node.image, rotation)
+    is_plain = not links or (links[0].from_node.type == "TEX_COORD" and links[0].from_socket.name == "Generated")
+    return _Picture(node.image, rotation) if is_plain else None
 
 
-def _note_unused(mapping: bpy.types.Node, world: bpy.types.World, notes) -> None:
+def _only_rotates(mapping: bpy.types.Node) -> bool:
     moved = "Location" in mapping.inputs and any(mapping.inputs["Location"].default_value)
-    scale = tuple(mapping.inputs["Scale"].default_value)
-    if moved or scale != (1, 1, 1) or mapping.inputs["Rotation"].is_linked:
-        notes.add(f"The Mapping node of the world {world.name!r} does more than rotate; only its rotation is used")
+    is_linked = any(socket.is_linked for socket in mapping.inputs if socket.name != "Vector")
+    return not moved and tuple(mapping.inputs["Scale"].default_value) == (1, 1, 1) and not is_linked

@@ -34,9 +34,12 @@ def told_of(material: bpy.types.Material | None) -> str:
     """The fingerprint of a material; an empty text without one."""
     if material is None:
         return ""
-    if not uses_nodes(material):
-        return checksum(["plain", plain(material.diffuse_color)])
-    return checksum(_of_tree(material.node_tree, material.node_tree.get_output_node("ALL"), {}))
+    return told_of_nodes(material) if uses_nodes(material) else checksum(["plain", plain(material.diffuse_color)])
+
+
+def told_of_nodes(owner: bpy.types.Material | bpy.types.World) -> str:
+    """The fingerprint of the nodes of a material or a world."""
+    return checksum(_of_tree(owner.node_tree, owner.node_tree.get_output_node("ALL"), {}))
 
 
 def _of_tree(tree: bpy.types.NodeTree, output: bpy.types.Node | None, known: dict) -> Iterator[str]:

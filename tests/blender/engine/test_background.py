@@ -102,10 +102,10 @@ def test_over_the_world_s_colour_a_transparent_picture_is_the_opaque_one(scene, 
     assert np.array_equal(opaque[..., 3], np.ones_like(opaque[..., 3]))
 
 
-def test_a_textured_world_is_said_to_be_used_plainly(scene, add_camera, add_world, picture, said):
+def test_a_world_of_what_cannot_be_read_is_said_to_be_used_plainly(scene, add_camera, add_world, picture, said):
     add_camera()
     tree = add_world((0.2, 0.4, 0.8)).node_tree
-    sky = tree.nodes.new("ShaderNodeTexNoise")
+    sky = tree.nodes.new("ShaderNodeTexEnvironment")
     tree.links.new(sky.outputs["Color"], tree.nodes["Background"].inputs["Color"])
     picture()
     assert "The world 'world' is textured; its Background node's plain colour is used" in said()
