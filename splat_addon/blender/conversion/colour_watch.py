@@ -2,8 +2,8 @@
 """Keeps the colours of surfels true: when a material, an image or a slot that they were made from was edited, they are
 painted again, in the 3D view a moment after each edit and before a render.
 
-What cannot be painted is said, in the sidebar and with a picture: surfels in linked files and in files of their own,
-and those whose source was deleted or has other faces.
+What is not painted is said, in the sidebar and with a picture: surfels that do not follow their source, those in linked
+files and in files of their own, and those whose source was deleted or has other faces.
 """
 
 from __future__ import annotations

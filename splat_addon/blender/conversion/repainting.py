@@ -20,6 +20,7 @@ from ..geometry.surfel_files import file_of
 from ..ids import POINT_ATTRIBUTES
 from ..materials.fingerprints import told_of
 from .as_rendered import as_rendered
+from .following import follows
 from .gathering import GatheredMesh, gather
 from .mesh_settings import choices
 from .painted_as import (
@@ -178,6 +179,8 @@ def _check(made: bpy.types.Object, before: PaintedAs | None, context: bpy.types.
         raise ValueError("some of them were baked")
     if not has_all_sources(made) or not sources_of(made):
         raise ValueError("its source was deleted")
+    if not follows(made, sources_of(made)[0]):
+        raise ValueError("they are a frozen copy")
     for source in sources_of(made):
         if source.name not in context.view_layer.objects:
             raise ValueError(f"its source {source.name!r} is not in this view layer")

@@ -5,6 +5,7 @@ import bpy
 import numpy as np
 import pytest
 
+from splat_addon.blender.conversion import colour_watch
 from splat_addon.blender.conversion.colour_watch import out_of_date, refresh
 from splat_addon.blender.export.live_meshes import LiveMeshes
 from splat_addon.blender.export.scene import SurfelStore, export_scene
@@ -267,6 +268,27 @@ def test_what_cannot_be_painted_is_said(why, painted, convert):
         bpy.ops.object.surfels_update()
         refresh(bpy.context)
         assert out_of_date(made) is None
+
+
+def test_a_frozen_copy_stays_and_says_so_until_it_is_updated(painted, convert, surfels_of):
+    [made] = convert(source="KEEP", follow=False, **SETTINGS)
+    recolour(painted)
+    before = colors_of(made)
+    refresh(bpy.context)
+    assert (colors_of(made) == before).all() and "they are a frozen copy" in out_of_date(made)
+    select(made)
+    bpy.ops.object.surfels_update()
+    refresh(bpy.context)
+    assert out_of_date(made) is None
+    assert np.allclose(surfels_of(made).colors[surfels_of(made).materials == 1, :3], (0.9, 0.1, 0.3))
+
+
+def test_the_timer_goes_on_until_all_is_painted(painted, convert, surfels_of):
+    [made] = convert(**SETTINGS)
+    recolour(painted)
+    while colour_watch._continue() is not None:
+        pass
+    assert np.allclose(surfels_of(made).colors[surfels_of(made).materials == 1, :3], (0.9, 0.1, 0.3))
 
 
 def colors_of(made):
