@@ -5,6 +5,8 @@ import ast
 from functools import cache
 from pathlib import Path
 
+import pytest
+
 from .test_prose import nodes
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -126,8 +128,11 @@ RENDERING_FLOORS = (
     {"viewport"},
     {"__init__"},
 )
-#: The folders of `sampling` from the bottom up. Imports go down.
-SAMPLING_FLOORS = "materials", "mesh", "ldc", "attributes", "edges", "refine"
+#: layer -> some of its folders from the bottom up. Imports go down.
+FLOORS = {
+    "sampling": ("materials", "mesh", "ldc", "attributes", "edges", "refine"),
+    "blender": ("geometry", "materials", "meshes", "conversion", "export", "engine"),
+}
 #: foreign module -> where it may be imported
 HOMES = {
     "bpy": ("blender/",),
@@ -190,21 +195,17 @@ def test_the_rooms_of_rendering_are_in_floors():
     assert wrong == []
 
 
-def test_the_folders_of_sampling_are_in_floors():
+@pytest.mark.parametrize("layer", FLOORS)
+def test_folders_are_in_floors(layer):
+    floors = FLOORS[layer]
     wrong = [
         f"{file.relative_to(PACKAGE)} imports {'.'.join(there)}"
-        for number, floor in enumerate(SAMPLING_FLOORS)
-        for file in (PACKAGE / "sampling" / floor).glob("*.py")
+        for number, floor in enumerate(floors)
+        for file in (PACKAGE / layer / floor).rglob("*.py")
         for there in (resolved(file, level, name) for level, name in imports(file) if level)
-        if there[:1] == ("sampling",) and there[1] in SAMPLING_FLOORS[number + 1 :]
+        if there[:1] == (layer,) and there[1] in floors[number + 1 :]
     ]
     assert wrong == []
-
-
-def test_conversion_knows_nothing_of_export():
-    files = [f for f in FILES if f.is_relative_to(PACKAGE / "blender" / "conversion")]
-    there = {resolved(file, level, name)[:2] for file in files for level, name in imports(file) if level}
-    assert files and ("blender", "export") not in there
 
 
 def test_no_import_within_a_function_hides_a_circle():

@@ -11,8 +11,8 @@ from types import SimpleNamespace
 import bpy
 import numpy as np
 
-from splat_addon.blender.geometry.mesh_extraction import read_mesh
 from splat_addon.blender.materials.node_walks import input_of
+from splat_addon.blender.meshes.mesh_extraction import read_mesh
 from splat_addon.sampling.materials.material_sampler import MaterialSampler, Samples
 
 SIDE = 16

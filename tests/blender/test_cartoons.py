@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from splat_addon.blender.export.shading import shading_material
-from splat_addon.blender.geometry.mesh_extraction import read_mesh
 from splat_addon.blender.geometry.reading import readable_mesh
 from splat_addon.blender.materials.ramps import PLACES
+from splat_addon.blender.meshes.mesh_extraction import read_mesh
 from splat_addon.blender.working_space import luminance
 
 LIGHT = np.linspace(0, 1, PLACES)

@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 import pytest
 
-from splat_addon.blender.geometry.mesh_extraction import read_mesh
+from splat_addon.blender.meshes.mesh_extraction import read_mesh
 from splat_addon.sampling.attributes.tangents import corner_tangents
 
 TEXELS = 4

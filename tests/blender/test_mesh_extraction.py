@@ -5,8 +5,8 @@ import bpy
 import numpy as np
 import pytest
 
-from splat_addon.blender.geometry.mesh_extraction import read_mesh, read_without_pixels
 from splat_addon.blender.geometry.reading import readable_mesh
+from splat_addon.blender.meshes.mesh_extraction import read_mesh, read_without_pixels
 
 
 def extract(source, read=read_mesh):

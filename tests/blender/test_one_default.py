@@ -14,8 +14,8 @@ from splat_addon.blender.conversion.mesh_settings import choices
 from splat_addon.blender.conversion.points_settings import PointsProperties, keywords
 from splat_addon.blender.conversion.source_record import SurfelPointsSettings
 from splat_addon.blender.export import live_meshes
-from splat_addon.blender.geometry.mesh_extraction import read_mesh
 from splat_addon.blender.ids import CONVERSION_SETTINGS
+from splat_addon.blender.meshes.mesh_extraction import read_mesh
 from splat_addon.sampling import PLAIN, sample_mesh, surfels_from_points
 
 SPACING = 0.125

@@ -5,11 +5,11 @@ import bpy
 import numpy as np
 import pytest
 
-from splat_addon.blender.geometry.mesh_extraction import read_mesh
 from splat_addon.blender.materials.graphs.channels import constant_of
 from splat_addon.blender.materials.graphs.vector_readers import inverse_of
 from splat_addon.blender.materials.surface_shaders import surface_shader
 from splat_addon.blender.materials.texture_images import UnreadableError
+from splat_addon.blender.meshes.mesh_extraction import read_mesh
 from splat_addon.blender.working_space import luminance
 from splat_addon.shading_nodes import numbers, vectors
 from splat_addon.shading_nodes.colors import hue_saturation

@@ -15,9 +15,9 @@ import numpy as np
 from mathutils import Matrix
 
 from ...sampling import Surface, TriangleMesh, have_same_values, joined, transformed
-from ..geometry.mesh_extraction import ExtractedMesh, read_mesh
 from ..geometry.sources import Piece, Reader, ShownMeshes, shown_by, why_nothing
 from ..materials.material_surfaces import Unread
+from ..meshes.mesh_extraction import ExtractedMesh, read_mesh
 from .placement import relative, without_scale, without_shear
 
 

@@ -34,9 +34,9 @@ from ...sampling import (
     sample_surface,
 )
 from ...surfels import Surfels
-from ..geometry.mesh_extraction import read_mesh, unread_sentences
 from ..materials.baking import Bakeable, baked, baked_otherwise
 from ..materials.material_surfaces import Unread
+from ..meshes.mesh_extraction import read_mesh, unread_sentences
 from ..object_detail import detail_of, finer
 from .automatic_density import automatic_spacing
 from .camera_density import without_camera

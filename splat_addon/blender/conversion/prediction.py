@@ -26,8 +26,8 @@ from ...sampling import (
     projected_area,
 )
 from ..doors import unattended, with_handlers
-from ..geometry.mesh_extraction import read_without_pixels
 from ..geometry.sources import has_surfaces
+from ..meshes.mesh_extraction import read_without_pixels
 from .gathering import frame_of, gather
 from .mesh_conversion import Choices, flat_places
 from .placement import relative

@@ -15,10 +15,11 @@ import numpy as np
 from ...sampling import Repainting, drop_strays, drop_unusable, has_normal_map
 from ...surfels import OPTIONAL_LAYOUT
 from ..geometry.attributes import read_field, remove_attribute, room_for, since_written, stamp_space, write_attribute
-from ..geometry.mesh_extraction import read_mesh, slot_materials
 from ..geometry.surfel_files import file_of
 from ..ids import POINT_ATTRIBUTES
 from ..materials.fingerprints import told_of
+from ..materials.slots import slot_materials
+from ..meshes.mesh_extraction import read_mesh
 from .as_rendered import as_rendered
 from .following import follows
 from .gathering import GatheredMesh, gather

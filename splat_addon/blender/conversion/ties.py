@@ -6,8 +6,8 @@ from __future__ import annotations
 import bpy
 import numpy as np
 
-from ..geometry.mesh_extraction import is_unread
 from ..ids import OBJECT_SETTINGS
+from ..meshes.mesh_extraction import is_unread
 from .animation import animated_paths
 from .as_rendered import as_rendered, differing_levels
 from .bring_back import hide_source, is_disabled_in_renders

@@ -40,13 +40,14 @@ from ...surfels import OPTIONAL_LAYOUT, Surfels
 from ..conversion.automatic_density import automatic_spacing
 from ..conversion.camera_density import most_demanding, without_camera
 from ..conversion.mesh_conversion import MAX_SURFELS, stray_triangles
-from ..geometry.mesh_extraction import ExtractedMesh, Topology, read_mesh, read_topology, slot_materials
-from ..geometry.mesh_polygons import left_out_of_polygons, mesh_polygons, needs_surfels
 from ..geometry.reading import readable_mesh
 from ..geometry.sources import mesh_key
 from ..geometry.split_meshes import MeshParts, parts_by_group
+from ..materials.slots import slot_materials
 from ..materials.surface_textures import kept_normal_maps, kept_textures
 from ..mesh_sampling_settings import Form
+from ..meshes.mesh_extraction import ExtractedMesh, Topology, read_mesh, read_topology
+from ..meshes.mesh_polygons import left_out_of_polygons, mesh_polygons, needs_surfels
 from ..object_detail import finer
 from . import passed_over
 from .holdouts import held_slots, with_holes

@@ -17,11 +17,11 @@ import bpy
 import numpy as np
 from mathutils import Matrix
 
-from ..geometry.mesh_extraction import slot_materials
 from ..geometry.sources import shown_by
 from .node_trees import uses_nodes
 from .node_walks import linked
 from .shader_mixes import emitted
+from .slots import slot_materials
 from .surface_shaders import SHADERS, surface_shader
 
 #: Pixels along the side of a square.

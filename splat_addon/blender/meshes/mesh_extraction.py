@@ -16,11 +16,12 @@ import bpy
 import numpy as np
 
 from ...sampling import Image, Surface, TriangleMesh
+from ..geometry.reading import read_values
 from ..materials.graphs.reading import REST
 from ..materials.material_surfaces import PLAIN, Unread, material_surface
 from ..materials.mesh_layers import ATTRIBUTE_TYPES, GENERATED, NORMAL, POSITION, TRUE_NORMAL, MeshLayers
+from ..materials.slots import slot_materials
 from ..materials.surface_shaders import why_unseen
-from .reading import read_values
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,13 +188,6 @@ def _material_indices(mesh: bpy.types.Mesh, topology: Topology, slots: int) -> n
         return None
     indices = read_values(attribute.data, "value", 1, len(mesh.polygons), np.int32)
     return topology.on_faces(np.clip(indices, 0, slots - 1))
-
-
-def slot_materials(evaluated: bpy.types.Object, mesh: bpy.types.Mesh) -> list[bpy.types.Material | None]:
-    """The mesh's materials, which Geometry Nodes may have set, overridden by slots that the object owns."""
-    slots = evaluated.material_slots
-    materials = list(mesh.materials) + [slot.material for slot in slots[len(mesh.materials) :]]
-    return [slots[k].material if k < len(slots) and slots[k].link == "OBJECT" else m for k, m in enumerate(materials)]
 
 
 def _surfaces(
