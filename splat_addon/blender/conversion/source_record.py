@@ -46,6 +46,9 @@ class SurfelRecord(bpy.types.PropertyGroup):
     mesh: PointerProperty(type=SurfelConversionSettings)
     points: PointerProperty(type=SurfelPointsSettings)
     unread: StringProperty(name="Not Sampled", description="Material inputs that could not be read, one per line")
+    place: FloatVectorProperty(
+        name="Place", description="Matrix of the surfels in the space of the first source, when converted", size=16
+    )
     hides_sources: BoolProperty(
         name="Hides Its Sources",
         description="The sources were hidden by the conversion, and are again when its surfels are shown",

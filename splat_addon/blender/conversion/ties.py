@@ -15,7 +15,7 @@ from .changed_sources import remember_shapes
 from .following import follow, follow_visibility
 from .made_of import forget
 from .object_info import sentences_about
-from .other_engines import show_one
+from .other_engines import show_new
 from .placement import placed
 from .shape_following import follow_shape, is_bent
 from .source_record import keep_record, record_of
@@ -32,11 +32,11 @@ def tie(conversion, made: bpy.types.Object, kind: str, settings, follows: bool, 
     """
     notes = []
     keep_record(made, conversion.sources, kind, settings)
+    matrix_world, _ = placed(conversion.matrix_world, conversion.surfels.origin)
     forget()
     record_of(made).hides_sources = hides
     keep_unread(made, conversion)
     if follows:
-        matrix_world, _ = placed(conversion.matrix_world, conversion.surfels.origin)
         unit = float(np.median(conversion.surfels.scales)) * min(map(abs, matrix_world.to_scale()))
         follow(made, conversion.sources[0], matrix_world, unit)
         notes = [*follow_visibility(made, conversion.sources), *tie_shape(conversion, made, kind)]
@@ -49,7 +49,7 @@ def tie(conversion, made: bpy.types.Object, kind: str, settings, follows: bool, 
         getattr(source, OBJECT_SETTINGS).render_as = "SCENE"
         if hides:
             hide_source(source)
-    show_one(made, bpy.context.view_layer)
+    show_new(made, matrix_world, bpy.context.view_layer)
     return notes
 
 

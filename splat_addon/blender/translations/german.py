@@ -1196,4 +1196,8 @@ GERMAN = {
     "Shadow Resolution": "Auflösung der Schatten",
     "Shutter Steps": "Schritte des Verschlusses",
     "Simplify": "Vereinfachen",
+    "Matrix of the surfels in the space of the first source, when converted": (
+        "Matrix der Surfels im Raum der ersten Quelle, als sie umgewandelt wurden"
+    ),
+    "Place": "Ort",
 }

@@ -33,6 +33,20 @@ def test_points_are_seen_only_where_the_source_is_not(cube, convert, hide):
     assert size_of_points(made) > 0
 
 
+@pytest.mark.parametrize("follow", [True, False])
+def test_a_copy_that_stands_elsewhere_is_seen(cube, convert, follow):
+    cube.location, cube.rotation_euler, cube.scale = (1, 2, 3), (0.3, 0.2, 0.1), (1, 2, 0.5)
+    bpy.context.view_layer.update()
+    (made,) = convert(resolution=8, follow=follow, space="WORLD")
+    assert size_of_points(made) == 0
+    cube.location.x = 5  # which takes those along that follow
+    bpy.context.view_layer.update()
+    assert (size_of_points(made) == 0) == follow
+    made.location.y += 1
+    bpy.context.view_layer.update()
+    assert size_of_points(made) > 0
+
+
 def test_a_source_that_is_shown_again_hides_them(cube, convert):
     (made,) = convert(resolution=8, source="HIDE")
     assert size_of_points(made) > 0

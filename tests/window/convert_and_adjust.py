@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs inside a Blender window: converts Suzanne with the sidebar's operator, and shows its tab and the rendered view.
+"""Runs inside a Blender window: converts Suzanne with the sidebar's operator, and adjusts it.
 
-test_window.py reads the report and the screenshot.
+test_operator.py reads the report.
 """
 
 import sys
@@ -12,25 +12,16 @@ import bpy
 sys.path[:0] = [str(Path(__file__).resolve().parents[2]), str(Path(__file__).resolve().parent)]
 
 from steps import (  # noqa: E402
-    at_rest,
     converted,
-    draw_at_once,
     in_view,
     open_sidebar,
     play,
     redrawn,
-    shot,
-    show_tab,
     smooth_and_red,
     surfel_objects,
-    view3d,
-    watched,
 )
 
 import splat_addon  # noqa: E402
-from splat_addon.blender.engine import viewport  # noqa: E402
-
-drawn = []
 
 
 def prepare():
@@ -58,35 +49,20 @@ def adjust():
         bpy.ops.ed.undo_redo()
 
 
-def look():
-    """Show the rendered view with our engine, and our tab in the sidebar."""
-    bpy.context.scene.render.engine = "SURFEL_SPLATTING"
-    bpy.context.scene.surfel_splatting.viewport_samples = 2
-    area, _ = view3d()
-    area.spaces[0].overlay.show_overlays = False
-    area.spaces[0].shading.type = "RENDERED"
-    show_tab("Surfels")
-
-
 def steps():
     """Yields the seconds to wait after each step, and returns the report."""
     prepare()
-    draw_at_once()
     yield from redrawn()
     result = convert()
     yield from converted()
     first = len(surfel_objects()[0].data.vertices)
     adjust()
     yield from redrawn()
-    look()
-    yield from at_rest(drawn)
-    shot("view")
     source_hidden = bpy.data.objects["Suzanne"].hide_get()
     report = {"operator": result, "first": first, "source_hidden": source_hidden}
     report["surfels"] = [len(owner.data.vertices) for owner in surfel_objects()]
     return report
 
 
-viewport.draw = watched(viewport.draw, drawn)
 splat_addon.register()
 play(steps())
