@@ -55,6 +55,8 @@ def _lights():
     two_sets = under(*ring(2, receivers=(0,)), *ring(2, receivers=(1,)))
     yield row("4 points, linked to other objects", "4 points", together(linked, two_sets), under(*ring(4)))
     yield row("ambient occlusion", "none", settings(ambient_occlusion=1.0), is_quick=True)
+    metal = shots.materials(Material(roughness=0.2, metallic=1.0))
+    yield row("reflections, drawn before", "metal", together(metal, settings(reflections=True)), metal, is_quick=True)
     yield row("a picture of the world", "an even world", world(environment=shots.sky()), is_quick=True)
     for kind, lamps in (("hard", HARD), ("soft", LAMPS)):
         for name, lamp in lamps.items():

@@ -27,6 +27,7 @@ from splat_addon.rendering.probes.mirrors import mirror_of
 from splat_addon.rendering.probes.pictures import LEVEL_SIDE, _lobes
 from splat_addon.rendering.probes.places import MAX_PROBES, probes_of
 from splat_addon.rendering.scene.finish import Finish
+from splat_addon.rendering.scene.light_probe import LightProbe
 from splat_addon.rendering.scene.octahedral import Octahedral, bordered
 
 SETTINGS = Settings(method="quad", reflections=True)
@@ -226,6 +227,17 @@ def test_what_lies_in_an_object_is_left_out_with_it_unless_the_camera_is_inside(
     assert probe.left_out == (0, 2) and probe.middle == pytest.approx((0, 0, HEIGHT), abs=1e-6)
     within = Camera.perspective(look_at((0, -0.3, HEIGHT), (0, 1, HEIGHT)), 0.5, (8, 8))
     assert probes_of(scene, within)[0][0].left_out == ()
+
+
+def test_a_light_probe_serves_what_is_in_its_box_in_the_place_of_a_probe_of_its_own():
+    axes = np.diag((2.0, 2.0, 2.0))
+    scene = Scene(polygons=[ball(), ball(place=(9, 0, 0)), FLOOR], light_probes=(LightProbe((0, 0, 1.2), axes),))
+    chosen, own = sorted(probes_of(scene, camera())[0], key=lambda probe: -probe.radius)
+    assert chosen.middle == (0, 0, 1.2) and chosen.left_out == (0,) and chosen.roughness == 0
+    assert own.middle == pytest.approx((9, 0, 0), abs=1e-6) and own.left_out == (1,)
+    assert probes_of(Scene(polygons=[FLOOR], light_probes=scene.light_probes), camera()) == ((), 0)
+    with pytest.raises(ValueError, match="must span a box"):
+        LightProbe((0, 0, 0), np.zeros((3, 3)))
 
 
 def test_of_many_the_largest_have_probes_and_the_plan_counts_the_others():

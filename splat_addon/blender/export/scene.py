@@ -45,6 +45,7 @@ from . import passed_over
 from .entries import kind_of, matrices_of
 from .holdouts import held_slots, with_holes
 from .light_linking import LightSets
+from .light_probes import light_probes
 from .live_meshes import LiveMesh, LiveMeshes, Manner, Place
 from .notes import Notes
 from .scan_colors import Column, painter
@@ -166,7 +167,8 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
         depsgraph, density_of_meshes(bpy_scene), looks_of_meshes(bpy_scene), notes
     )
     lights = (replace(light, receivers=light_sets.lit_by(number)) for number, light in enumerate(lights))
-    scene = Scene((*things.surfels, *sampled), tuple(lights), polygons=tuple(polygons))
+    probes = light_probes(depsgraph, notes)
+    scene = Scene((*things.surfels, *sampled), tuple(lights), polygons=tuple(polygons), light_probes=probes)
     world = _world_of(depsgraph)
     try:
         return store.world.around(scene, world, notes), notes

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where a scene's probes are: one in the middle of each glossy object."""
+"""Where a scene's probes are: where the user chose, and in the middle of each other glossy object."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy as np
 
 from ..scene import Scene
 from ..scene.camera import Camera
+from ..scene.light_probe import LightProbe
 from ..scene.material import Material, reflectance
 from ..scene.table import InstanceTable
 
@@ -46,7 +47,8 @@ def glossy(table: InstanceTable) -> np.ndarray:
 
 
 def probes_of(scene: Scene, camera: Camera) -> tuple[tuple[Probe, ...], int]:
-    """The probes, and the number of glossy objects that have none."""
+    """The probes, and the number of glossy objects or light probes that have none. An object whose middle is in the box
+    of a light probe has no other."""
     table = scene.table
     are_glossy = glossy(table)
     if not are_glossy.any():
@@ -55,21 +57,39 @@ def probes_of(scene: Scene, camera: Camera) -> tuple[tuple[Probe, ...], int]:
     lengths = np.linalg.norm(axes, axis=2)
     radii = lengths.max(axis=1)
     is_round = (lengths.min(axis=1) > FLATTEST * radii) & ~table.are_flattened
+    for chosen in scene.light_probes:
+        is_round &= ~_are_in(middles, chosen.middle, np.array(chosen.axes))
     rows = np.flatnonzero(are_glossy & is_round)
     # polygons and surfels of a split object have one together
     rows = rows[np.unique(np.concatenate([middles, axes.reshape(-1, 9)], axis=1)[rows], axis=0, return_index=True)[1]]
-    largest = rows[np.argsort(-radii[rows], kind="stable")][:MAX_PROBES]
-    seen = tuple(_probe(table, int(row), middles, axes, radii, camera) for row in np.sort(largest))
+    largest = rows[np.argsort(-radii[rows], kind="stable")]
+    found = [_chosen(table, probe, are_glossy, middles, axes, radii) for probe in scene.light_probes]
+    found += [_probe(table, int(row), middles, axes, radii, camera) for row in largest]
     # a surface uses the first one whose box holds it
-    return tuple(sorted(seen, key=lambda probe: probe.radius)), len(rows) - len(largest)
+    kept = sorted(found[:MAX_PROBES], key=lambda probe: probe.radius)
+    return tuple(kept), len(found) - len(kept)
+
+
+def _chosen(table: InstanceTable, probe: LightProbe, are_glossy: np.ndarray, middles, axes, radii) -> Probe:
+    """The probe at a place that the user chose. What is glossy and around it is left out if it is smaller than its
+    box."""
+    least = min(_least_roughness(table.placed[row]) for row in np.flatnonzero(are_glossy).tolist())
+    smaller = are_glossy & (np.abs(np.linalg.det(axes)) > 0) & (radii < np.linalg.norm(probe.axes, axis=1).max())
+    point = np.array([probe.middle])
+    around = [row for row in np.flatnonzero(smaller).tolist() if _are_in(point, middles[row], axes[row])[0]]
+    return Probe(probe.middle, probe.axes, tuple(around), least)
+
+
+def _are_in(points: np.ndarray, middle, axes: np.ndarray) -> np.ndarray:
+    """(n,) bool: which of (n, 3) points are in a box."""
+    return (np.abs((points - middle) @ np.linalg.inv(axes)) < 1).all(axis=1)
 
 
 def _probe(table: InstanceTable, row: int, middles, axes, radii, camera: Camera) -> Probe:
     """The probe of one object. What is smaller and has its middle in its box belongs to it and is left out too, but not
     if the camera is in it: a room keeps its furniture and its walls."""
-    to_box = np.linalg.inv(axes[row])
-    are_in = (np.abs((middles - middles[row]) @ to_box) < 1).all(axis=1) & (radii <= radii[row])
-    holds_camera = (np.abs((camera.matrix_world[:3, 3] - middles[row]) @ to_box) < 1).all()
+    are_in = _are_in(middles, middles[row], axes[row]) & (radii <= radii[row])
+    holds_camera = _are_in(camera.matrix_world[None, :3, 3], middles[row], axes[row])[0]
     left_out = () if holds_camera else tuple(np.flatnonzero(are_in).tolist())
     rows = tuple(tuple(axis) for axis in axes[row].tolist())
     return Probe(tuple(middles[row].tolist()), rows, left_out, _least_roughness(table.placed[row]))

@@ -19,6 +19,7 @@ from ...surfels import Surfels
 from .camera import Camera
 from .environment import Environment
 from .light import MAX_LIGHT_SETS, Light
+from .light_probe import LightProbe
 from .material import Material, NormalTexture, SurfaceTexture
 from .numbers import MAX_INDEX, MAX_LENGTH, MIN_LENGTH, check_lengths, check_radiance, check_range
 from .picture_sun import PictureSun
@@ -270,6 +271,7 @@ class Scene:
         seen without the environment, which still lights.
     picture_sun: the part of the environment that is seen but does not light, because a light stands for it
         (`sun_apart`).
+    light_probes: where glossy objects see their surroundings from; others do from their own middle.
     """
 
     surfels: tuple[Instance, ...] = ()
@@ -280,8 +282,10 @@ class Scene:
     background: tuple[float, float, float] | None = None
     hides_environment: bool = False
     picture_sun: PictureSun | None = None
+    light_probes: tuple[LightProbe, ...] = ()
 
     def __post_init__(self):
+        object.__setattr__(self, "light_probes", tuple(self.light_probes))
         instances = tuple(s if isinstance(s, Instance) else Instance(s) for s in self.surfels)
         object.__setattr__(self, "surfels", instances)
         object.__setattr__(self, "lights", tuple(self.lights))
