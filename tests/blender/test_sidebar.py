@@ -39,11 +39,13 @@ class Layout:
         self.drawn.texts.append(text)
 
     def prop(self, owner, name, **_):
+        assert name in owner.bl_rna.properties
         self.drawn.order.append(name)
         self.drawn.properties.append(name)
 
     def prop_enum(self, owner, name, value):
-        self.prop(owner, value)
+        assert value in owner.bl_rna.properties[name].enum_items
+        self.drawn.order.append(value)
 
     def operator(self, name, **_):
         self.drawn.order.append(name)
@@ -128,6 +130,27 @@ def test_surfels_and_their_source_are_updated_with_the_settings_of_their_convers
         assert not {"follow", "join", "space", "source"} & set(shown.properties)
     made.surfel_record.mesh.quality = "FINE"
     assert (made.surfel_record.mesh.density, made.surfel_record.mesh.pixels) == ("AUTOMATIC", 0.375)
+
+
+def test_surfels_of_a_scan_keep_their_settings(scan, drawn):
+    assert {"splat_size", "finds_creases", "flatness", "source"} <= set(drawn(is_open=True).properties)
+    bpy.ops.object.surfels_from_points(neighbours=8)
+    shown = drawn(is_open=True)
+    assert leads(shown, UPDATE_SURFELS) and shown.texts[0].endswith("surfels of scan")
+    assert "neighbours" in shown.properties and not {"source", "follow"} & set(shown.properties)
+    made = bpy.context.active_object
+    made.surfel_record.points.isolated = "KEEP"
+    assert bpy.ops.object.surfels_update() == {"FINISHED"} and len(made.data.vertices) == 50
+
+
+def test_surfels_in_another_scene_do_not_count(cube, convert, drawn):
+    (made,) = convert(resolution=8)
+    other = bpy.data.scenes.new("other")
+    other.collection.objects.link(made)
+    bpy.context.scene.collection.objects.unlink(made)
+    cube.select_set(True)
+    bpy.context.view_layer.objects.active = cube
+    assert leads(drawn(), SURFELS_FROM_MESH)
 
 
 def test_surfels_without_a_source_cannot_be_updated(cube, convert, drawn):

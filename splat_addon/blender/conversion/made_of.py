@@ -17,9 +17,11 @@ _made: dict[int, list[int]] = {}
 
 
 def surfels_of(source: bpy.types.Object) -> list[bpy.types.Object]:
-    """The surfel objects in the file that were made of an object."""
+    """The surfel objects in the active view layer that were made of an object, as far as views may show them."""
     _search_if_changed()
-    return [bpy.data.objects[place] for place in _made.get(source.session_uid, ())]
+    made = (bpy.data.objects[place] for place in _made.get(source.session_uid, ()))
+    # in another view layer, objects are neither visible nor hidden
+    return [each for each in made if each.visible_get() or each.hide_get()]
 
 
 def converted() -> list[bpy.types.Object]:

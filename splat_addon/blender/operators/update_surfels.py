@@ -23,11 +23,8 @@ def updatable(context: bpy.types.Context) -> list[bpy.types.Object]:
     """The selected surfel objects that know their sources, and those of this view layer whose source is selected."""
     found = {}
     for selected in context.selected_objects:
-        if selected.type == "MESH" and sources_of(selected):
-            found[selected] = None
-        else:  # in another view layer, objects are neither visible nor hidden
-            made = (each for each in surfels_of(selected) if each.visible_get() or each.hide_get())
-            found.update(dict.fromkeys(made))
+        is_made = selected.type == "MESH" and sources_of(selected)
+        found.update(dict.fromkeys([selected] if is_made else surfels_of(selected)))
     return list(found)
 
 
