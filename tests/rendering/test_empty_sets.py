@@ -11,6 +11,7 @@ from splat_addon.rendering import (
     Camera,
     Environment,
     EquidistantFisheye,
+    EyeDome,
     Instance,
     Light,
     Lines,
@@ -63,6 +64,7 @@ SETTINGS = {
     "lit splats": {"lights_splats": True, "outputs": UNLIT},
     "lit and flat": {"lights_splats": True, "shading": "flat", "outputs": UNLIT},
     "lines": {"lines": Lines(), "ambient_occlusion": 1.0, "lights_splats": True, "outputs": ("color",)},
+    "eye-dome lighting": {"shading": "captured", "eye_dome": EyeDome()},
     "no backs": {"culls_backs": True, "transparent_film": True, "as_printed": True, "storage": "16-bit"},
     "quad": {"method": "quad", "supersampling": 2, "detail_tolerance": 0.0},
 }

@@ -10,6 +10,7 @@ from splat_addon.reference import scenes
 from splat_addon.rendering import Renderer, Scene, Settings, look_at
 from splat_addon.rendering.methods import METHODS
 from splat_addon.rendering.plan.tile import TileContext
+from splat_addon.rendering.scene.eye_dome import EyeDome
 from splat_addon.rendering.scene.lines import Lines
 from splat_addon.surfels import valid_surfels
 
@@ -35,7 +36,7 @@ CASES = {
     "numbers": (Settings(outputs=("color", "object_index", "material_index")), 1.0),
     "numbers of layers": (Settings(outputs=("color", "object_index")), 0.9),
     "wide lines": (Settings(outputs=EVERYTHING, lines=Lines(width=9.0)), 1.0),
-    "occlusion": (Settings(outputs=EVERYTHING, ambient_occlusion=1.0), 1.0),
+    "occlusion": (Settings(outputs=EVERYTHING, ambient_occlusion=1.0, eye_dome=EyeDome(radius=9.0)), 1.0),
     "transparent film": (Settings(outputs=EVERYTHING, transparent_film=True), 1.0),
 }
 

@@ -52,18 +52,20 @@ def _scan_colored(
         return surfels
     if kind == "HEIGHT":
         row = tuple(np.array(object_.matrix_world, np.float64)[2].tolist())
-        column = Column(_heights(surfels, row), hash(row))
+        digest, values = hash(row), partial(_heights, surfels, row)
     elif column is None:
         what = f"attribute {settings.color_column!r} of one number per point" if settings.color_column else "attribute"
         notes.add(f"{object_.name} has no {what} to be coloured by, and keeps its own colours")
         return surfels
-    if len(column.values) != len(surfels):  # some of them stand in for all while a view reads them
+    elif len(column.values) != len(surfels):  # some of them stand in for all while a view reads them
         return surfels
+    else:
+        digest, values = column.digest, lambda: column.values
     texture = settings.color_ramp
     ramp = table(texture.color_ramp)[:, :3].clip(0) if texture is not None and texture.use_color_ramp else None
     ends = (None, None) if settings.color_is_automatic else (settings.color_from, settings.color_to)
-    key = kind, column.digest, ends, None if ramp is None else ramp.tobytes()
-    return derived.get(surfels, key, lambda: _painted(surfels, _colors(kind, column.values, ramp, ends)))
+    key = kind, digest, ends, None if ramp is None else ramp.tobytes()
+    return derived.get(surfels, key, lambda: _painted(surfels, _colors(kind, values(), ramp, ends)))
 
 
 def _heights(surfels: Surfels, row: tuple[float, ...]) -> np.ndarray:
