@@ -49,7 +49,7 @@ def square_surfels(spacing: float, color, keep=lambda x, y: x > -9):
 
 #: Their splats lie away from the surface: the whole disc (Botsch and Kobbelt 2003, section 3.1, unfiltered), or at flat
 #: angles, where the low-pass has the depth that equations 8 and 9 of Guennebaud et al. 2006 lengthen tangents to, and
-#: that of the centre in Botsch et al. 2005, section 5.
+#: the plane's, however far that is, in Botsch et al. 2005, section 5.
 IN_FRONT = {"sprites_unfiltered", "homogeneous_printed", "raycast_printed"}
 #: Botsch and Kobbelt 2003, equation 4 as printed adds an offset that equation 2 gives in radii to a depth in units of
 #: the scene, with the other sign: depths are wrong by as much.
