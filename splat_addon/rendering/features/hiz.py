@@ -6,6 +6,8 @@ It is one level of a hierarchical z-buffer (Greene, Kass, Miller 1993).
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ..culling.backs import show_backs
@@ -27,30 +29,40 @@ def _of_cells(plan, pixels: tuple[int, int]) -> tuple[int, int]:
 FARTHEST = Texture("hiz", "R32F", _of_cells)
 
 
-def pays(planning) -> str:
-    """The reason to look for hidden splats, or ""."""
+class Search(NamedTuple):
+    """Why hidden splats are looked for, and why not, where they might be; "" otherwise."""
+
+    why: str = ""
+    why_not: str = ""
+
+
+def search(planning) -> Search:
+    """Whether looking for hidden splats pays."""
     if planning.method.rasterizer != "screen_space":
-        return ""
+        return Search()
     if not planning.method.culls_hidden:
-        planning.skip(FARTHEST.name, f"{planning.method.name} draws hidden splats too, as its paper does")
-        return ""
+        return Search(why_not=f"{planning.method.name} draws hidden splats too, as its paper does")
     table = planning.scene.table
     opaque = table.taken(table.of_kinds(lambda i: isinstance(i, Instance) and not i.is_transparent))
     showing = np.count_nonzero(show_backs(opaque, planning.camera))
     if not showing:
-        planning.skip(FARTHEST.name, "nothing opaque shows its backs, which most of what is hidden would be")
-        return ""
-    return f"{showing} of {len(opaque)} instances show backs: those behind all that is seen are not drawn"
+        return Search(why_not="nothing opaque shows its backs, which most of what is hidden would be")
+    return Search(f"{showing} of {len(opaque)} instances show backs: those behind all that is seen are not drawn")
 
 
 def passes(planning):
-    if planning.shown and (why := planning.find(pays)):
+    if not planning.shown:
+        return
+    why, why_not = planning.find(search)
+    if why:
         own = Part("hiz", reads=(DEPTH_BOUNDS,), writes=(FARTHEST,))
         yield Pass("hiz", why, Host.HIZ, fill, (own,))
+    elif why_not:
+        planning.skip(FARTHEST.name, why_not)
 
 
 def is_present(planning) -> bool:
-    return bool(planning.shown and planning.find(pays))
+    return bool(planning.shown and planning.find(search).why)
 
 
 def parts(planning, p):

@@ -6,6 +6,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...runs import ranges
+
 #: Cell numbers up to this can be added and multiplied in int64 without overflow.
 _MAX_KEY = 2**62
 
@@ -53,10 +55,8 @@ class Cells:
         """(c, m) places of the points in the blocks around cells (by `cell_of_query`), padded with N."""
         starts, counts = self._starts[cells].ravel(), self._counts[cells].ravel()
         sums = self._counts[cells].sum(axis=1)
-        begins = np.cumsum(counts) - counts
         places = np.full((len(cells), sums.max()), len(self.order), np.int64)
-        flat = np.arange(counts.sum()) + np.repeat(starts - begins, counts)
-        places[np.arange(places.shape[1]) < sums[:, None]] = flat
+        places[np.arange(places.shape[1]) < sums[:, None]] = ranges(starts, counts)
         return places
 
     def certain_squares(self, queries: np.ndarray) -> np.ndarray:
