@@ -37,10 +37,10 @@ def render_exact(
 
     samples: samples x samples rays per pixel at (i + 0.5) / samples; replaces `settings.supersampling`.
     pixel_filter: a name in `filters.PIXEL_FILTERS`; always say which one a number was measured with. `settings.method`
-        and `settings.layers` are ignored: there are as many transparent layers as rays hit. `settings.lines` are not
-        drawn, and two others darken nothing, because they depend on the picture: `settings.ambient_occlusion`, of which
-        `ambient_occlusion.open_share` is the share of the world's light that surfaces of a frame leave one another,
-        and `settings.eye_dome`, whose factor is `eye_dome.darkening`.
+        and `settings.layers` are ignored: there are as many transparent layers as rays hit. `settings.lines` and the
+        styles of materials are not drawn, and two others darken nothing, because they depend on the picture:
+        `settings.ambient_occlusion`, of which `ambient_occlusion.open_share` is the share of the world's light that
+        surfaces of a frame leave one another, and `settings.eye_dome`, whose factor is `eye_dome.darkening`.
 
     A ray sees the splats that lie no deeper than the nearest splat moved back by `settings.epsilon` of its radius
     along the ray, mixes them with weights exp(-2 rho^2), and is shaded once (Botsch et al. 2005, deferred).
