@@ -124,8 +124,8 @@ def _is_in(made: bpy.types.Object, view: np.ndarray) -> bool:
 
 @unattended("Painting surfels again")
 def _continue() -> float | None:
-    """The timer."""
-    if bpy.context.mode in _BUSY:
+    """The timer; it waits while a render reads the meshes in another thread."""
+    if bpy.context.mode in _BUSY or bpy.app.is_job_running("RENDER"):
         return _DELAY * 4
     return 0.0 if _work(bpy.context, time.monotonic() + _AT_ONCE) else None
 
