@@ -56,9 +56,39 @@ float probe_inverse_distance(vec3 direction) {
 
 const int PROBE_STEPS = 16;
 const int PROBE_HALVINGS = 5;
+// Distances that differ from a plane's by more than this share are those of something in front.
+const float PROBE_STEP = 0.25;
+
+// A ray from the surface, seen from the probe: by the angle at which its points lie.
+struct ProbeRay {
+  vec3 from;
+  vec3 side;
+  float turn;    // the angle of its end
+  float height;  // the inverse of its least distance
+};
+
+vec3 probe_toward(ProbeRay ray, float angle) {
+  return ray.from * cos(angle) + ray.side * sin(angle);
+}
+
+// How much nearer than the ray's point the probe sees something, as inverse distances.
+float probe_nearer(ProbeRay ray, float angle) {
+  return probe_inverse_distance(probe_toward(ray, angle)) - ray.height * sin(ray.turn - angle);
+}
+
+// Whether the ray does not meet what begins to hide it, but passes behind it: before that, what is seen lies on a plane
+// far away.
+bool probe_passes_behind(ProbeRay ray, float angle) {
+  float near = 1.5 * 3.5449077 / frame.probe_side;
+  float back = probe_inverse_distance(probe_toward(ray, angle - 2.0 * near));
+  float before = probe_inverse_distance(probe_toward(ray, angle - near));
+  float after = probe_inverse_distance(probe_toward(ray, angle + near));
+  return after - (3.0 * before - 2.0 * back) > PROBE_STEP * after;
+}
 
 // The direction from the probe in which a ray from the surface meets what the probe sees. away: how far that is from
 // the surface over how far it is from the probe. Steps are even in the angle that the ray's points have at the probe.
+// What is hidden behind something is taken to be as what is seen beside that.
 vec3 probe_direction(vec3 direction, out float away) {
   float inverse = inversesqrt(max(dot(reflecting_place, reflecting_place), 1e-30));
   vec3 from = reflecting_place * inverse;
@@ -67,27 +97,31 @@ vec3 probe_direction(vec3 direction, out float away) {
   float sine = length(side);
   away = 1.0;
   if (sine < 1e-3) return direction;
-  side /= sine;
-  float turn = atan(sine, cosine), low = 0.0, high = turn;
-  bool is_before = probe_inverse_distance(from) < inverse;
+  ProbeRay ray = ProbeRay(from, side / sine, atan(sine, cosine), inverse / sine);
+  bool was_before = probe_nearer(ray, 0.0) < 0.0, passed = false;
+  float found = ray.turn, last = 0.0;
   for (int i = 1; i <= PROBE_STEPS; i++) {
-    float angle = turn * float(i) / float(PROBE_STEPS);
-    bool is_front = probe_inverse_distance(from * cos(angle) + side * sin(angle)) < inverse * sin(turn - angle) / sine;
-    if (is_before && !is_front) {
-      high = angle;
-      break;
+    float next = ray.turn * float(i) / float(PROBE_STEPS);
+    bool is_before = probe_nearer(ray, next) < 0.0;
+    if (was_before && !is_before) {
+      float low = last, high = next;
+      for (int k = 0; k < PROBE_HALVINGS; k++) {
+        float middle = 0.5 * (low + high);
+        if (probe_nearer(ray, middle) < 0.0) low = middle; else high = middle;
+      }
+      float met = 0.5 * (low + high);
+      if (!probe_passes_behind(ray, met)) {
+        found = met;
+        break;
+      }
+      if (!passed) found = max(met - 1.5 * 3.5449077 / frame.probe_side, 0.0);
+      passed = true;
     }
-    is_before = is_front;
-    low = angle;
+    was_before = is_before;
+    last = next;
   }
-  for (int i = 0; i < PROBE_HALVINGS; i++) {
-    float angle = 0.5 * (low + high);
-    bool is_front = probe_inverse_distance(from * cos(angle) + side * sin(angle)) < inverse * sin(turn - angle) / sine;
-    if (is_front) low = angle; else high = angle;
-  }
-  float angle = 0.5 * (low + high);
-  away = sin(angle) / sine;
-  return from * cos(angle) + side * sin(angle);
+  away = sin(found) / sine;
+  return probe_toward(ray, found);
 }
 
 const int PROBE_LEVELS = 4;
@@ -96,7 +130,7 @@ const int PROBE_LEVEL_SIDE = 32;
 // Blurred maps give way to levels from this roughness on.
 const float PROBE_MAPS_END = 0.3;
 // A texel of the map that is looked up, over the lobe's half width: the square of the roughness.
-const float PROBE_TEXEL = 1.4;
+const float PROBE_TEXEL = 2.4;
 
 vec4 probe_level_at(int level, vec3 direction) {
   ivec2 origin = reflecting_texels + ivec2(level * (PROBE_LEVEL_SIDE + 2), int(frame.probe_side) + 2);

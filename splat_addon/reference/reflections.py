@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What rays meet among the things that a probe sees, in float64, by small steps.
 
-The twin of shaders/features/reflections.glsl, which finds the place by halving (Szirmay-Kalos et al. 2005).
+The twin of shaders/features/reflections.glsl, which finds the place by halving (Szirmay-Kalos et al. 2005), and takes
+what is hidden behind something to be as what is beside that; here it is what hides it.
 """
 
 from __future__ import annotations
