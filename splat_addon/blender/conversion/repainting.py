@@ -17,7 +17,7 @@ from ...surfels import OPTIONAL_LAYOUT
 from ..geometry.attributes import read_field, remove_attribute, room_for, since_written, stamp_space, write_attribute
 from ..geometry.surfel_files import file_of
 from ..ids import POINT_ATTRIBUTES
-from ..materials.fingerprints import told_of
+from ..materials.fingerprints import missing_image, told_of
 from ..materials.slots import slot_materials
 from ..meshes.mesh_extraction import read_mesh
 from .as_rendered import as_rendered
@@ -185,5 +185,7 @@ def _check(made: bpy.types.Object, before: PaintedAs | None, context: bpy.types.
     for source in sources_of(made):
         if source.name not in context.view_layer.objects:
             raise ValueError(f"its source {source.name!r} is not in this view layer")
+    if name := next(filter(None, map(missing_image, made.data.materials)), None):
+        raise ValueError(f"the file of the image {name!r} is missing")
     if before is None or before.count != len(made.data.vertices):
         raise ValueError("surfels were added or removed")

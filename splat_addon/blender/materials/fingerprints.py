@@ -16,6 +16,7 @@ import bpy
 import numpy as np
 
 from ..fingerprints import checksum, plain, settings
+from ..geometry.node_groups import nodes_in
 from .node_trees import uses_nodes
 
 #: Properties of nodes that change no picture, beside those that all nodes have.
@@ -40,6 +41,16 @@ def told_of(material: bpy.types.Material | None) -> str:
 def told_of_nodes(owner: bpy.types.Material | bpy.types.World) -> str:
     """The fingerprint of the nodes of a material or a world."""
     return checksum(_of_tree(owner.node_tree, owner.node_tree.get_output_node("ALL"), {}))
+
+
+def missing_image(material: bpy.types.Material | None) -> str | None:
+    """The name of an image of a material whose file is not there, so that nobody knows its pixels."""
+    nodes = nodes_in(material.node_tree) if material is not None and uses_nodes(material) else ()
+    for image in filter(None, (getattr(node, "image", None) for node in nodes)):
+        is_held = image.source == "GENERATED" or image.packed_files or image.has_data
+        if not is_held and b"missing" in _files(bpy.path.abspath(image.filepath_raw, library=image.library), image):
+            return image.name
+    return None
 
 
 def _of_tree(tree: bpy.types.NodeTree, output: bpy.types.Node | None, known: dict) -> Iterator[str]:

@@ -115,7 +115,7 @@ def test_a_textured_square_is_cycles_square(wire, square, convert, picture, swit
 
 
 def test_surfels_without_their_textures_say_so(square, convert, picture, capfd):
-    convert(resolution=16)
+    convert(resolution=16, follow=False)
     tree = square.data.materials[0].node_tree
     wire_emission(tree, tree.nodes["Principled BSDF"].inputs)
     square.hide_render = True

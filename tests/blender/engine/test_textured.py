@@ -254,7 +254,7 @@ def test_a_viewport_reads_an_image_again_only_where_it_is_told(image):
 @pytest.mark.parametrize("shader", ["ShaderNodeEmission", "ShaderNodeBsdfGlass", "ShaderNodeMixShader"])
 def test_a_shader_without_a_base_colour_leaves_the_stored_colours(add_textured, image, picture, shader):
     material = textured_material(image)
-    add_textured(material)
+    add_textured(material).parent = None  # what follows no source is a frozen copy
     nodes, links = material.node_tree.nodes, material.node_tree.links
     output = next(n for n in nodes if n.type == "OUTPUT_MATERIAL")
     links.new(nodes.new(shader).outputs[0], output.inputs["Surface"])

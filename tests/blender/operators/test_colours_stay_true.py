@@ -239,6 +239,12 @@ def lose_a_face(cube, made):
     cube.data = mesh
 
 
+def lose_the_image(cube, made):
+    image = bpy.data.images.new("lost", 4, 4)
+    image.source, image.filepath = "FILE", "/nowhere/lost.png"
+    next(node for node in cube.data.materials[0].node_tree.nodes if node.type == "TEX_IMAGE").image = image
+
+
 def store(cube, made):
     select(made)
     bpy.ops.object.surfels_to_file(filepath=bpy.app.tempdir + "stored.surfels")
@@ -250,6 +256,7 @@ IMPOSSIBLE = {
     "its source 'Cube' is not in this view layer": lambda cube, made: bpy.context.collection.objects.unlink(cube),
     "surfels were added or removed": lambda cube, made: made.data.vertices.add(1),
     "they are in a file of their own": store,
+    "the file of the image 'lost' is missing": lose_the_image,
 }
 
 
