@@ -20,6 +20,7 @@ import splat_addon
 from measuring.blender_scene import lit_scene, rendered
 from splat_addon.reference.metrics import mean_flip, psnr, srgb
 from splat_addon.rendering.presets import PRESETS
+from splat_addon.whole_files import whole_file
 
 #: Amplification of the difference in the figure.
 MAGNIFIED = 4
@@ -75,7 +76,8 @@ def truth_of(name: str, scene: bpy.types.Scene, options) -> np.ndarray:
     """Cycles' picture, kept in the folder of the report."""
     kept = options.out / f"{name}-{options.size[0]}-{options.samples}.npy"
     if not kept.exists():
-        np.save(kept, rendered(scene))
+        with whole_file(kept, np.load) as stream:
+            np.save(stream, rendered(scene))
     return np.load(kept)
 
 
