@@ -118,7 +118,17 @@ def test_surfels_without_their_textures_say_so(square, convert, picture, capfd):
     convert(resolution=16, follow=False)
     tree = square.data.materials[0].node_tree
     wire_emission(tree, tree.nodes["Principled BSDF"].inputs)
-    square.hide_render = True
+    bpy.data.objects.remove(square)  # otherwise the surfels take the texture
     picture()
     said = capfd.readouterr().out
     assert "textures Emission Color" in said and "Convert the mesh again" in said
+
+
+def test_surfels_take_a_texture_that_came_after_the_conversion(square, convert, picture, capfd):
+    convert(resolution=16)
+    tree = square.data.materials[0].node_tree
+    wire_emission(tree, tree.nodes["Principled BSDF"].inputs)
+    square.hide_render = True
+    middle = [picture()[6:26, columns, :3].mean(axis=(0, 1)) for columns in (slice(6, 13), slice(19, 26))]
+    assert np.abs(middle[0] - middle[1]).max() > 0.05
+    assert "Convert the mesh again" not in capfd.readouterr().out

@@ -272,8 +272,8 @@ def test_where_a_splat_is_minified_and_magnified_the_tangents_filter_is_closer_t
 
 def test_the_three_passes_of_2005_are_these():
     """Botsch et al. 2005, section 4.1: the visibility pass fills the z-buffer, the attribute pass sums colours and
-    normals in render targets of floats, and the lighting pass alone has the lights. Between them a pass over the picture
-    makes bounds of the depths."""
+    normals in render targets of floats, and the lighting pass alone has the lights. Between them a pass over the
+    picture makes bounds of the depths."""
     scene, camera = POSES["torus"]
     lit = replace(scene, lights=(Light("sun", energy=1.0),))
     passes = plan(lit, camera, Settings(method="raycast_printed", shading="phong", outputs=("color",))).passes
