@@ -63,6 +63,7 @@ FILTER_GROUP = "Filter Scan"
 
 #: The node group that shows a surfel object in other engines and shading modes, and the material that it has there.
 POINTS_GROUP = "Surfels as Points"
+SIZELESS_GROUP = "Surfels as Points without Size"
 POINTS_MATERIAL = "Surfels as Points"
 
 #: Render settings: `scene.surfel_splatting`.

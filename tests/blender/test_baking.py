@@ -5,6 +5,8 @@ import bpy
 import numpy as np
 import pytest
 
+from splat_addon.blender.ids import POINTS_GROUP, POINTS_MATERIAL, SIZELESS_GROUP
+
 KINDS = (
     *("scenes", "objects", "meshes", "materials", "images", "node_groups", "collections", "worlds", "cameras"),
     *("lights", "textures"),
@@ -222,8 +224,9 @@ def test_the_file_is_left_as_it_was(square, convert):
     after = {kind: sorted(i.name for i in getattr(bpy.data, kind)) for kind in KINDS}
     after["objects"].remove(made.name)
     after["meshes"].remove(made.data.name)
-    for kind in ("materials", "node_groups"):
-        after[kind].remove("Surfels as Points")
+    after["materials"].remove(POINTS_MATERIAL)
+    for name in (POINTS_GROUP, SIZELESS_GROUP):
+        after["node_groups"].remove(name)
     assert after == before
     assert (scene.render.engine, scene.cycles.samples, bpy.context.scene) == (engine, samples, scene)
     assert [(link.from_node.name, link.to_socket.name) for link in nodes.tree.links] == links

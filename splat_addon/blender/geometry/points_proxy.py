@@ -14,7 +14,7 @@ from contextlib import contextmanager
 
 import bpy
 
-from ..ids import POINT_ATTRIBUTES, POINTS_GROUP, POINTS_MATERIAL, SOLID
+from ..ids import POINT_ATTRIBUTES, POINTS_GROUP, POINTS_MATERIAL, SIZELESS_GROUP, SOLID
 from .node_groups import known_group, new_modifier_group, uses_group
 from .node_maths import enabled
 from .reading import readable_mesh
@@ -90,7 +90,7 @@ def _group(version: int) -> bpy.types.NodeTree:
 
 
 def _new_group(version: int) -> bpy.types.NodeTree:
-    group = new_modifier_group(POINTS_GROUP, _MAKE, version)
+    group = new_modifier_group(SIZELESS_GROUP if version == _SIZELESS else POINTS_GROUP, _MAKE, version)
     material = group.interface.new_socket("Material", in_out="INPUT", socket_type="NodeSocketMaterial")
     material.default_value = _material()
     new, link = group.nodes.new, group.links.new
