@@ -17,7 +17,7 @@ from . import (
 )
 from .conversion import (
     bring_back,
-    colour_watch,
+    color_watch,
     mesh_settings,
     other_engines,
     points_settings,
@@ -64,7 +64,7 @@ MODULES = (
     source_record,
     surfel_files,
     bring_back,
-    colour_watch,
+    color_watch,
     other_engines,
     overrides,
     operators,

@@ -19,7 +19,7 @@ from ...rendering.scene import placed_at
 from ...streaming import Stream
 from ...surfels import Surfels
 from ..conversion.changed_sources import ChangedSources
-from ..conversion.colour_watch import out_of_date
+from ..conversion.color_watch import out_of_date
 from ..conversion.placement import finite_matrix
 from ..conversion.source_record import is_stood_in, stood_in
 from ..geometry.attributes import (

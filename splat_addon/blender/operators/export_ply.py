@@ -11,7 +11,7 @@ from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy_extras.io_utils import ExportHelper
 
 from ...interchange import write_gaussian_ply, write_ply
-from ..conversion.colour_watch import refresh
+from ..conversion.color_watch import refresh
 from ..geometry.attributes import has_surfels
 from ..geometry.scene_offset import scene_offset
 from ..geometry.surfel_files import file_of

@@ -8,7 +8,7 @@ import bpy
 from ...streaming import PORTION
 from ...streaming.layout import SUFFIX
 from ...surfels import portions
-from ..conversion.colour_watch import refresh
+from ..conversion.color_watch import refresh
 from ..doors import register_classes_factory
 from ..geometry.attributes import read_surfels
 from ..geometry.sources import is_surfel_object

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import bpy
 
-from ..conversion.colour_watch import why_out_of_date
+from ..conversion.color_watch import why_out_of_date
 from ..conversion.mesh_settings import (
     PROPERTY_NAMES,
     QUALITIES,

@@ -5,8 +5,8 @@ import bpy
 import numpy as np
 import pytest
 
-from splat_addon.blender.conversion import colour_watch
-from splat_addon.blender.conversion.colour_watch import out_of_date, refresh
+from splat_addon.blender.conversion import color_watch
+from splat_addon.blender.conversion.color_watch import out_of_date, refresh
 from splat_addon.blender.export.live_meshes import LiveMeshes
 from splat_addon.blender.export.scene import SurfelStore, export_scene
 from splat_addon.blender.geometry.attributes import read_surfels
@@ -293,7 +293,7 @@ def test_a_frozen_copy_stays_and_says_so_until_it_is_updated(painted, convert, s
 def test_the_timer_goes_on_until_all_is_painted(painted, convert, surfels_of):
     [made] = convert(**SETTINGS)
     recolour(painted)
-    while colour_watch._continue() is not None:
+    while color_watch._continue() is not None:
         pass
     assert np.allclose(surfels_of(made).colors[surfels_of(made).materials == 1, :3], (0.9, 0.1, 0.3))
 
@@ -309,3 +309,11 @@ def notes_of():
     store.begin_frame()
     live.begin_frame()
     return export_scene(bpy.context.evaluated_depsgraph_get(), store, live)[1].sentences()
+
+
+def test_an_animated_material_is_named(painted, convert):
+    (made,) = convert(**SETTINGS)
+    assert out_of_date(made) is None
+    shader = shader_of(painted.data.materials[1])
+    shader.inputs["Base Color"].keyframe_insert("default_value", frame=1)
+    assert out_of_date(made).startswith("The material 'second' of 'Cube surfels' is animated")

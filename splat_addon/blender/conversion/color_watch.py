@@ -44,9 +44,20 @@ def why_out_of_date(made: bpy.types.Object) -> str | None:
 
 
 def out_of_date(made: bpy.types.Object) -> str | None:
-    """The same as a sentence."""
-    why = why_out_of_date(made)
-    return why and f"The colours of {made.name!r} are out of date: {why}; update its surfels"
+    """The same as a sentence, or one about materials that change from frame to frame."""
+    if why := why_out_of_date(made):
+        return f"The colours of {made.name!r} are out of date: {why}; update its surfels"
+    for material in filter(_is_animated, getattr(made.data, "materials", ())):
+        return (
+            f"The material {material.name!r} of {made.name!r} is animated, and surfels keep the colours of one frame; "
+            "hide them so that their source is drawn"
+        )
+    return None
+
+
+def _is_animated(material: bpy.types.Material | None) -> bool:
+    known = material and material.node_tree and material.node_tree.animation_data
+    return bool(known and (known.action or known.drivers))
 
 
 def refresh(context: bpy.types.Context) -> None:
