@@ -66,7 +66,7 @@ TABLES = {
             "Phong, each splat lit": replace(ONE, method="raycast_printed", lights_splats=True),
             "Sprites (2003)": replace(ONE, method="sprites"),
         },
-        "NPR 1.0 to 1.3; shadows 1.39 to 1.51 under Phong, 1.30 to 1.47 under NPR; sprites 0.81 to 1.15; Phong "
+        "NPR 1.0 to 1.3; shadows 1.4 to 1.5 under Phong, 1.3 to 1.5 under NPR; sprites 0.81 to 1.15; Phong "
         "splatting (2004) 3.7 to 4.9",
         "Shadow maps have 512 texels a side; sprites write their depth, which costs the early test.",
     ),

@@ -251,8 +251,8 @@ def about_centre(p, s, t, x):
 
 
 def test_where_a_splat_is_minified_and_magnified_the_tangents_filter_is_closer_to_ewa_than_the_union():
-    """A disc of 3 pixels is seen so flat that it is 0.3 pixels high; what is compared are weights over their largest,
-    in a square of 16 pixels (Guennebaud et al. 2006, section 4.2)."""
+    """A disc is seen so flat that its half-axes are 3 and 0.3 pixels in the picture; what is compared are weights over
+    their largest, in a square of 16 pixels (Guennebaud et al. 2006, section 4.2)."""
     cosine, pixel = 0.1, 0.01
     up = np.array((0, cosine, -np.sqrt(1 - cosine**2)))
     plane = splat_plane((0, 0, -1), (3 * pixel, 0, 0), 3 * pixel * up)
