@@ -55,35 +55,62 @@ float probe_inverse_distance(vec3 direction) {
 }
 
 const int PROBE_STEPS = 16;
-const int PROBE_HALVINGS = 5;
-// Distances that differ from a plane's by more than this share are those of something in front.
-const float PROBE_STEP = 0.25;
+const int PROBE_HALVINGS = 3;
+// Behind what begins to hide it by more than this share of the inverse distance, a ray does not meet it.
+const float PROBE_BEHIND = 0.05;
 
-// A ray from the surface, seen from the probe: by the angle at which its points lie.
+// A ray from the surface, seen from the probe. Its points are given by the cosine and sine of the angle from its start.
 struct ProbeRay {
   vec3 from;
   vec3 side;
-  float turn;    // the angle of its end
-  float height;  // the inverse of its least distance
+  float inverse;    // of the distance of its start
+  float cotangent;  // of the angle of its end
 };
 
-vec3 probe_toward(ProbeRay ray, float angle) {
-  return ray.from * cos(angle) + ray.side * sin(angle);
+vec3 probe_toward(ProbeRay ray, vec2 turned) {
+  return ray.from * turned.x + ray.side * turned.y;
+}
+
+// The inverse distance of the ray's point.
+float probe_own(ProbeRay ray, vec2 turned) {
+  return ray.inverse * max(turned.x - turned.y * ray.cotangent, 0.0);
 }
 
 // How much nearer than the ray's point the probe sees something, as inverse distances.
-float probe_nearer(ProbeRay ray, float angle) {
-  return probe_inverse_distance(probe_toward(ray, angle)) - ray.height * sin(ray.turn - angle);
+float probe_nearer(ProbeRay ray, vec2 turned) {
+  return probe_inverse_distance(probe_toward(ray, turned)) - probe_own(ray, turned);
 }
 
-// Whether the ray does not meet what begins to hide it, but passes behind it: before that, what is seen lies on a plane
-// far away.
-bool probe_passes_behind(ProbeRay ray, float angle) {
-  float near = 1.5 * 3.5449077 / frame.probe_side;
-  float back = probe_inverse_distance(probe_toward(ray, angle - 2.0 * near));
-  float before = probe_inverse_distance(probe_toward(ray, angle - near));
-  float after = probe_inverse_distance(probe_toward(ray, angle + near));
-  return after - (3.0 * before - 2.0 * back) > PROBE_STEP * after;
+// A bit more than the angle that a texel spans.
+float probe_texel(vec3 toward) {
+  vec3 size = abs(toward);
+  return 3.0 / frame.probe_side * pow(size.x + size.y + size.z, 1.5);
+}
+
+// Whether the ray does not meet what begins to hide it, but passes behind its rim: distances are interpolated there, and
+// those of what hides it go on towards the rim as a plane's. beside: the direction of what is seen beside the rim.
+bool probe_passes_behind(ProbeRay ray, vec2 turned, out vec3 beside) {
+  vec3 toward = probe_toward(ray, turned);
+  float texel = probe_texel(toward);
+  vec3 along = texel * (ray.side * turned.x - ray.from * turned.y), across = texel * cross(ray.from, ray.side);
+  vec3 rise = along * (probe_inverse_distance(toward + along) - probe_inverse_distance(toward - along))
+      + across * (probe_inverse_distance(toward + across) - probe_inverse_distance(toward - across));
+  rise /= ray.inverse;
+  vec3 nearer = rise * (texel / max(length(rise), 1e-9));
+  float near = probe_inverse_distance(toward + nearer);
+  float rim = min(near, 2.0 * near - probe_inverse_distance(toward + 2.0 * nearer));
+  beside = toward - nearer;
+  return rim - probe_own(ray, turned) > PROBE_BEHIND * rim;
+}
+
+// Where between two of its points the ray meets what is nearer than the second.
+vec2 probe_met(ProbeRay ray, vec2 low, vec2 high, float at_low, float at_high) {
+  for (int k = 0; k < PROBE_HALVINGS; k++) {
+    vec2 middle = normalize(low + high);
+    float at = probe_nearer(ray, middle);
+    if (at < 0.0) { low = middle; at_low = at; } else { high = middle; at_high = at; }
+  }
+  return normalize(mix(low, high, at_low / (at_low - at_high)));
 }
 
 // The direction from the probe in which a ray from the surface meets what the probe sees. away: how far that is from
@@ -97,31 +124,35 @@ vec3 probe_direction(vec3 direction, out float away) {
   float sine = length(side);
   away = 1.0;
   if (sine < 1e-3) return direction;
-  ProbeRay ray = ProbeRay(from, side / sine, atan(sine, cosine), inverse / sine);
-  bool was_before = probe_nearer(ray, 0.0) < 0.0, passed = false;
-  float found = ray.turn, last = 0.0;
-  for (int i = 1; i <= PROBE_STEPS; i++) {
-    float next = ray.turn * float(i) / float(PROBE_STEPS);
-    bool is_before = probe_nearer(ray, next) < 0.0;
-    if (was_before && !is_before) {
-      float low = last, high = next;
-      for (int k = 0; k < PROBE_HALVINGS; k++) {
-        float middle = 0.5 * (low + high);
-        if (probe_nearer(ray, middle) < 0.0) low = middle; else high = middle;
-      }
-      float met = 0.5 * (low + high);
-      if (!probe_passes_behind(ray, met)) {
-        found = met;
-        break;
-      }
-      if (!passed) found = max(met - 1.5 * 3.5449077 / frame.probe_side, 0.0);
-      passed = true;
+  ProbeRay ray = ProbeRay(from, side / sine, inverse, cosine / sine);
+  float angle = atan(sine, cosine) / float(PROBE_STEPS);
+  mat2 turn = mat2(cos(angle), sin(angle), -sin(angle), cos(angle));
+  vec2 last = vec2(1.0, 0.0), next;
+  float before = probe_nearer(ray, last), after;
+  vec3 found = direction, beside;
+  bool passed = false;
+  // one loop finds what hides the ray and the outer one decides, because some drivers run all that is in a loop each time
+  for (int i = 0; i < PROBE_STEPS; i++) {
+    for (; i < PROBE_STEPS; i++) {
+      next = turn * last;
+      after = probe_nearer(ray, next);
+      if (before < 0.0 && after > 0.0) break;
+      last = next;
+      before = after;
     }
-    was_before = is_before;
+    if (i == PROBE_STEPS) break;
+    vec2 met = probe_met(ray, last, next, before, after);
+    bool passes = probe_passes_behind(ray, met, beside);
+    if (!passes || !passed) {
+      found = passes ? beside : probe_toward(ray, met);
+      away = met.y / sine;
+    }
+    if (!passes) break;
+    passed = true;
     last = next;
+    before = after;
   }
-  away = sin(found) / sine;
-  return probe_toward(ray, found);
+  return found;
 }
 
 const int PROBE_LEVELS = 4;

@@ -102,6 +102,24 @@ def test_a_ball_of_metal_reflects_what_rays_meet(render):
     assert np.mean(np.abs(bare - true).max(axis=1) < 0.05) < 0.6
 
 
+def test_the_rim_of_what_is_near_a_ball_lies_where_rays_pass_it(render):
+    """Rays meet a board up to its rim and not beyond."""
+    corner, wide, high = np.array([(-0.576, 0.387, 0.5), (-0.737, -0.311, 0.0), (0.0, 0.0, 1.2)])
+    board = make_polygons([corner, corner + wide, corner + wide + high, corner + high], [(0, 1, 2), (0, 2, 3)])
+    board = replace(board, colors=np.tile((0.0, 0, 0, 1), (6, 1)))
+    view = camera((128, 128))
+    hits, place, direction = rays_of(view)
+    scene = Scene(polygons=[ball(), PolygonInstance(board, materials=(glowing(RED),))], world=tuple(SKY))
+    ours = render(scene, view, SETTINGS).color[hits][:, :3]
+    system = np.stack(np.broadcast_arrays(wide, high, -direction), axis=2)
+    across, up, along = np.linalg.solve(system, (place - corner)[..., None])[..., 0].T
+    inside = np.min([across, 1 - across, up, 1 - up], axis=0)
+    meets = (along > 0) & (inside > 0)
+    assert 200 < meets.sum() < 0.5 * len(meets)
+    is_red = np.abs(ours - RED).max(axis=1) < np.abs(ours - SKY).max(axis=1)
+    assert np.count_nonzero(is_red != meets) < 0.05 * meets.sum()
+
+
 @pytest.fixture
 def coarse(monkeypatch):
     """Probes with few texels, where it does not matter what is seen in them."""
