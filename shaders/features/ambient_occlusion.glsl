@@ -69,8 +69,8 @@ float horizon_cosine(ivec2 texel, vec3 position, vec3 to_eye, Slice slice, Searc
 // Integral of the cosine to the normal times the sine, over an angle from the viewer given by its cosine, on the side
 // where `normal.y` points: equation 7 times the normal's length, where half of 1 - cos 2a is 1 - cosine^2.
 float arc(float cosine, vec2 normal) {
-  float square = 1.0 - cosine * cosine;
-  return 0.5 * (normal.x * square + normal.y * (acos(cosine) - cosine * sqrt(square)));
+  float square = 1.0 - cosine * cosine, sine = sqrt(square);
+  return 0.5 * (normal.x * square + normal.y * (atan(sine, cosine) - cosine * sine));  // acos differs by the driver
 }
 
 float open_share_at(ivec2 texel, vec3 position, vec3 normal) {
@@ -100,7 +100,7 @@ float open_share_at(ivec2 texel, vec3 position, vec3 normal) {
     open += arc(horizon_cosine(texel, position, to_eye, slice, search, -lowest), own);
     slice.along = -along;
     open += arc(horizon_cosine(texel, position, to_eye, slice, search, lowest), vec2(own.x, -own.y));
-    all += own.x + asin(lowest) * own.y;
+    all += own.x + atan(own.y, own.x) * own.y;
   }
   return clamp(open / all, 0.0, 1.0);
 }
