@@ -144,7 +144,7 @@ def conversions(meshes, options):
                 cut = lines[..., 2] < 1
                 clock, work = (Spread.of(turns.part(lambda pair, k=k: pair[k]).ratios(kind, "now")) for k in (0, 1))
                 yield (
-                    short(name), resolution, kind, f"{len(sampling.surfels):,}", len(sampling.gap_triangles),
+                    short(name), resolution, kind, f"{len(sampling.surfels):,}", sampling.gaps,
                     f"{cut.any(axis=1).sum():,}", f"{cut.all(axis=1).sum():,}", f"{reflex.sum():,}", f"{work:.2f}",
                     f"{clock:.2f}",
                 )  # fmt: skip

@@ -16,6 +16,7 @@ from ...primaries import recolored
 from ...rendering import Instance, Light, Scene
 from ...rendering.detail.hierarchies import replaced
 from ...rendering.scene import placed_at
+from ...rendering.scene.light_probe import LightProbe
 from ...streaming import Stream
 from ...surfels import Surfels
 from ..conversion.changed_sources import ChangedSources
@@ -45,7 +46,7 @@ from . import passed_over
 from .entries import kind_of, matrices_of
 from .holdouts import held_slots, with_holes
 from .light_linking import LightSets
-from .light_probes import light_probes
+from .light_probes import is_sphere_probe, light_probe_of
 from .live_meshes import LiveMesh, LiveMeshes, Manner, Place
 from .notes import Notes
 from .scan_colors import Column, painter
@@ -152,7 +153,7 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
     notes, bpy_scene = Notes(), depsgraph.scene
     for sentence in passed_over.of_scene(bpy_scene):
         notes.add(sentence)
-    lights, light_sets = _lights(depsgraph, notes)
+    lights, light_sets, probes = _lights(depsgraph, notes)
     things = _Things(depsgraph, store, live_meshes, light_sets, notes)
     if depsgraph.view_layer_eval.use_solid:
         things.add_all()
@@ -167,8 +168,7 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
         depsgraph, density_of_meshes(bpy_scene), looks_of_meshes(bpy_scene), notes
     )
     lights = (replace(light, receivers=light_sets.lit_by(number)) for number, light in enumerate(lights))
-    probes = light_probes(depsgraph, notes)
-    scene = Scene((*things.surfels, *sampled), tuple(lights), polygons=tuple(polygons), light_probes=probes)
+    scene = Scene((*things.surfels, *sampled), tuple(lights), polygons=tuple(polygons), light_probes=tuple(probes))
     world = _world_of(depsgraph)
     try:
         return store.world.around(scene, world, notes), notes
@@ -341,10 +341,16 @@ def _is_seen(entry: bpy.types.DepsgraphObjectInstance, depsgraph: bpy.types.Deps
     return False
 
 
-def _lights(depsgraph: bpy.types.Depsgraph, notes: Notes) -> tuple[list[Light], LightSets]:
-    """All lights that emit, and the objects that they light."""
-    lights, objects = [], []
+def _lights(depsgraph: bpy.types.Depsgraph, notes: Notes) -> tuple[list[Light], LightSets, list[LightProbe]]:
+    """All lights that emit, the objects that they light, and the sphere probes: in one walk, of which Blender keeps a
+    wrapper for each instance."""
+    lights, objects, probes = [], [], []
     for entry in depsgraph.object_instances:
+        if is_sphere_probe(entry):
+            try:
+                probes.append(light_probe_of(entry))
+            except Exception as error:
+                notes.leave_out(entry.object.name, error)
         if entry.object.type == "LIGHT" and entry.show_self:
             try:
                 light = light_of(entry.object.data, finite_matrix(entry.matrix_world), notes)
@@ -356,7 +362,7 @@ def _lights(depsgraph: bpy.types.Depsgraph, notes: Notes) -> tuple[list[Light], 
                     notes.add(sentence)
                 lights.append(light)
                 objects.append(entry.object.original)
-    return lights, LightSets(objects, notes)
+    return lights, LightSets(objects, notes), probes
 
 
 #: Types without faces.

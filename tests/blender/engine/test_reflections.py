@@ -5,8 +5,8 @@ import bpy
 import numpy as np
 import pytest
 
-from splat_addon.blender.export.light_probes import light_probes
-from splat_addon.blender.export.notes import Notes
+from splat_addon.blender.export.live_meshes import LiveMeshes
+from splat_addon.blender.export.scene import SurfelStore, export_scene
 
 RED = (1.0, 0.05, 0.05)
 
@@ -51,6 +51,7 @@ def test_sphere_probes_are_exported(scene):
     scene.collection.objects.link(made)
     other = bpy.data.objects.new("volume", bpy.data.lightprobes.new("volume", "VOLUME"))
     scene.collection.objects.link(other)
-    (found,) = light_probes(bpy.context.evaluated_depsgraph_get(), Notes())
+    depsgraph = bpy.context.evaluated_depsgraph_get()
+    (found,) = export_scene(depsgraph, SurfelStore(), LiveMeshes())[0].light_probes
     assert found.middle == (1, 2, 3)
     np.testing.assert_allclose(found.axes, np.diag((3.0, 3.0, 6.0)))
