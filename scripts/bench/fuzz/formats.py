@@ -238,7 +238,8 @@ class NpzFiles:
         out, packing = io.BytesIO(), some(random, (zipfile.ZIP_STORED, zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED))
         with zipfile.ZipFile(out, "w", packing) as archive:
             for name, data in members.items():
-                archive.writestr(name, data)
+                # of no date, so that the same numbers make the same file
+                archive.writestr(zipfile.ZipInfo(name), data, packing)
         return out.getvalue()
 
 
