@@ -15,14 +15,15 @@ IMAGE_FORMATS = {"OPEN_EXR": "IMAGE", "OPEN_EXR_MULTILAYER": "MULTI_LAYER_IMAGE"
 
 @pytest.fixture
 def scene(empty_file, tmp_path):
-    """An empty scene for our engine: 32 x 32 pixels, one unfiltered sample, no lighting, transparent film,
-    float file.
+    """An empty scene for our engine: 32 x 32 pixels, one unfiltered sample, no lighting, occlusion or reflections,
+    transparent film, float file.
     """
     made = bpy.context.scene
     made.render.engine = "SURFEL_SPLATTING"
     made.render.resolution_x = made.render.resolution_y = 32
     made.render.film_transparent = True
     made.surfel_splatting.shading = "flat"
+    made.surfel_splatting.use_ambient_occlusion = made.surfel_splatting.use_reflections = False
     made.surfel_splatting.method, made.surfel_splatting.supersampling = "quad", 1
     made.surfel_splatting.samples = made.surfel_splatting.blur_samples = 1
     # Unless told otherwise, a render in background stops at an object that it cannot draw.

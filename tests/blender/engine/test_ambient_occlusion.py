@@ -92,6 +92,7 @@ def test_a_concave_model_is_nearer_to_cycles(make, seen, scene, picture, switch_
 
 def test_the_settings_reach_the_engine(scene):
     properties = scene.surfel_splatting
+    properties.property_unset("use_ambient_occlusion")
     assert final_settings(bpy.context.view_layer, scene, ("color",)).ambient_occlusion == np.inf
     properties.ambient_occlusion_distance = 2.5
     assert final_settings(bpy.context.view_layer, scene, ("color",)).ambient_occlusion == 2.5

@@ -15,6 +15,7 @@ def metal_and_wall(scene, add_camera):
     """A ball of metal before the camera, which stands between it and a red wall."""
     scene.render.resolution_x = scene.render.resolution_y = 24
     scene.surfel_splatting.shading = "principled"
+    scene.surfel_splatting.property_unset("use_reflections")
     scene.world = bpy.data.worlds.new("world")
     scene.world.use_nodes = True
     add_camera((0, -4, 0), (np.pi / 2, 0, 0), angle=0.4)
