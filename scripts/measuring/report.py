@@ -85,14 +85,12 @@ class Report:
         write_whole(self.out / f"{name}.csv", text.getvalue().encode("utf-8"))
 
     def picture(self, name: str, pictures: Iterable, columns: int = 0, encode=srgb, enlarged: int = 1, colors: int = 0):
-        """Pictures (h, w, 3 or 4) with row 0 at the bottom, side by side or in rows of `columns`, as one PNG; what the
-        last row lacks is white.
+        """Pictures (h, w, 3 or 4) with row 0 at the bottom, side by side or in full rows of `columns`, as one PNG.
 
         encode: for scene-linear values, or None to show values unchanged. colors: size of a palette, if any.
         """
         shown = [np.clip((encode or np.asarray)(picture[::-1, :, :3]), 0, 1) for picture in pictures]
         across = columns or len(shown)
-        shown += [np.ones_like(shown[-1])] * (-len(shown) % across)
         rows = [np.concatenate(shown[first : first + across], axis=1) for first in range(0, len(shown), across)]
         image = Image.fromarray((255 * np.concatenate(rows) + 0.5).astype(np.uint8))
         image = image.resize((enlarged * image.width, enlarged * image.height), Image.Resampling.NEAREST)
