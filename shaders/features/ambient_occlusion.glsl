@@ -47,14 +47,17 @@ struct Search {
 // Cosine between the direction to the viewer and the highest horizon along a direction, at least `lowest`. Occluders
 // beyond half the distance fade out.
 float horizon_cosine(ivec2 texel, vec3 position, vec3 to_eye, Slice slice, Search search, float lowest) {
-  uvec2 size = uvec2(textureSize(sample_depths, 0));
+  ivec2 size = textureSize(sample_depths, 0);
+  // to the picture's edge along the slice: where a tap leaves the picture, the next row has one less, which shows
+  vec2 room = mix(vec2(texel), vec2(size - 1 - texel), step(vec2(0.0), slice.along)) / max(abs(slice.along), vec2(1e-6));
+  float reach = min(search.reach, min(room.x, room.y));
   float highest = lowest, per_distance = 2.0 / search.distance;
   int last = 0;
   for (int i = 0; i < OCCLUSION_STEPS; i++) {
     float share = (float(i) + search.phase) / float(OCCLUSION_STEPS);
-    last = max(last + 1, int(share * share * search.reach + 0.5));
+    last = max(last + 1, int(share * share * reach + 0.5));
     ivec2 at = texel + ivec2(floor(slice.along * float(last) + 0.5));
-    if (any(greaterThanEqual(uvec2(at), size))) break;  // a negative value is a large unsigned one
+    if (any(greaterThanEqual(uvec2(at), uvec2(size)))) break;  // a negative value is a large unsigned one
     float depth = texelFetch(sample_depths, at, 0).r;
     if (!(depth > 0.0)) continue;
     vec3 toward = eye_position(at, depth) - position;

@@ -6,7 +6,7 @@
 //          world beside that. The texture is that of rendering/probes/pictures.py. The twin of reference/reflections.py.
 
 #part world_light
-float reflecting = 0.0;  // 1 if there is a probe for this surface
+float reflecting = 0.0;  // share of a probe in what this surface reflects
 vec3 reflecting_place;  // from the probe's middle
 ivec2 reflecting_texels;  // where its pictures begin
 
@@ -197,12 +197,13 @@ void reflections_reflected(inout vec3 light, vec3 direction, float roughness) {
   vec4 seen = vec4(0.0);
   if (share < 1.0) seen += (1.0 - share) * probe_mapped_at(toward, rough);
   if (share > 0.0) seen += share * probe_blurred_at(toward, rough);
-  light = seen.rgb + (1.0 - seen.a) * sent_reflection(direction, roughness);
+  light = mix(light, seen.rgb + (1.0 - seen.a) * sent_reflection(direction, roughness), reflecting);
 }
 
 #part shaded_sample
-// Beyond this share of its half-axes a surface belongs to a probe's box if it faces away from its middle, as what stands
-// on something does; up to the other there is room for rounding.
+// Surfaces that face away from its middle belong to a probe's box up to its rim, with room for rounding. Of others, such
+// as a floor under what has the probe, it fades out between these shares of the half-axes, so that no rim shows.
+const float PROBE_FADES = 0.7;
 const float PROBE_INSIDE = 0.95;
 const float PROBE_OUTSIDE = 1.01;
 
@@ -219,8 +220,9 @@ void reflections_prepare(inout Shaded s) {
     }
     vec3 place = position - texelFetch(probes, ivec2(PROBE_HEADER * k + 3, 0), 0).xyz;
     float reach = max(max(at.x, at.y), at.z);
-    if (reach > PROBE_OUTSIDE || (reach > PROBE_INSIDE && !(dot(normal, place) > 0.0))) continue;
-    reflecting = 1.0;
+    reflecting = dot(normal, place) > 0.0 ? float(reach <= PROBE_OUTSIDE)
+        : clamp((PROBE_INSIDE - reach) / (PROBE_INSIDE - PROBE_FADES), 0.0, 1.0);
+    if (!(reflecting > 0.0)) continue;
     reflecting_place = place;
     reflecting_texels = ivec2(0, 1 + k * (side + PROBE_LEVEL_SIDE + 4));
     break;

@@ -369,3 +369,18 @@ def test_of_flat_objects_the_largest_that_is_seen_is_the_mirror():
     made = plan(scene, view, SETTINGS)
     assert dict(made.skipped)["reflections in 1 flat objects"] == "the largest is the frame's mirror"
     assert any(name == "MIRROR" for name, _ in made.features)
+
+
+def test_no_rim_of_a_box_shows_on_a_floor_in_it(render):
+    """A floor through the lower part of the ball and its box, whose corner is seen from above, below another ball."""
+    ground = replace(floor(), positions=floor().positions + np.float32((0, 0, HEIGHT - 0.8 * RADIUS)))
+    ground = replace(ground, colors=np.ones_like(ground.colors))
+    rough = PolygonInstance(ground, materials=(Material(roughness=0.6, ior=4.0),) * 2)
+    red = ball(glowing(RED), (-0.45, -0.45, 2.2), RADIUS)
+    above = look_at((-0.45, -0.45, 1.5), (-0.45, -0.45, 0), (0, 1, 0))
+    view = Camera.orthographic(above, 0.2, (64, 64))
+    scene = Scene(polygons=[ball(), rough, red], world=tuple(SKY))
+    row = render(scene, view, SETTINGS).color[32, :, :3]
+    bare = render(scene, view, replace(SETTINGS, reflections=False)).color[32, :, :3]
+    assert np.abs(row - bare).max() > 0.01
+    assert np.abs(np.diff(row, axis=0)).max() < 0.25 * np.abs(row - bare).max()
