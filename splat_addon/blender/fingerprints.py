@@ -41,4 +41,9 @@ def of_values(data: bpy.types.ID, name: str, key: str, width: int, kind: type) -
     values = np.empty(len(attribute.data) * width if attribute else 0, kind)
     if len(values):
         attribute.data.foreach_get(key, values)
-    return f"{zlib.crc32(values):08x}"
+    return of_array(values)
+
+
+def of_array(values: np.ndarray) -> str:
+    """A checksum of numbers and of how many there are."""
+    return f"{values.shape} {zlib.crc32(np.ascontiguousarray(values)):08x}"

@@ -8,7 +8,6 @@ It is kept in the mesh, because objects may share that: 8 bytes a surfel, and a 
 from __future__ import annotations
 
 import json
-import zlib
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 
@@ -16,7 +15,7 @@ import bpy
 import numpy as np
 
 from ...sampling import TriangleMesh, has_normal_map, places_in_triangles
-from ..fingerprints import checksum, of_values
+from ..fingerprints import checksum, of_array, of_values
 from ..geometry.attributes import write_attribute
 from ..geometry.reading import read_values
 from ..geometry.sources import has_surfaces, instanced_collections
@@ -96,7 +95,7 @@ def names_of(materials) -> list[str]:
 
 
 def told_of_triangles(mesh: TriangleMesh) -> str:
-    return f"{len(mesh)} {zlib.crc32(np.ascontiguousarray(mesh.triangles, np.int32)):08x}"
+    return of_array(np.asarray(mesh.triangles, np.int32))
 
 
 def told_of_layers(sources: list[bpy.types.Object]) -> str:

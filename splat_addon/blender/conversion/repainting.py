@@ -99,8 +99,8 @@ class Repaint:
     def _gathered(self, sources: list[bpy.types.Object], depsgraph: bpy.types.Depsgraph) -> GatheredMesh:
         """The sources with the materials that count; the slots of the surfels are set where the sources lead."""
         images: dict = {}
-        about, slots = (sources, depsgraph, self._in_world_units), self.made.data.materials
-        gathered = gather(*about, partial(read_mesh, images=images))
+        slots = self.made.data.materials
+        gathered = gather(sources, depsgraph, self._in_world_units, partial(read_mesh, images=images))
         if names_of(gathered.materials) != self._before.materials:
             was = self._before.materials
             for k, material in enumerate(gathered.materials):
@@ -118,7 +118,7 @@ class Repaint:
             own = [material and material.original for material in slot_materials(evaluated, mesh)]
             return read_mesh(evaluated, mesh, images=images, slots=[chosen.get(each, each) for each in own])
 
-        return replace(gather(*about, read), materials=gathered.materials)
+        return replace(gather(sources, depsgraph, self._in_world_units, read), materials=gathered.materials)
 
     def _rows_to_paint(self) -> np.ndarray:
         """The surfels whose values may be others."""
@@ -163,8 +163,7 @@ class Repaint:
             if name not in self._values:
                 remove_attribute(mesh, POINT_ATTRIBUTES[name])
         if self._are_bound is not None and "normals" in self._values:
-            about = self._triangles.clip(0), self._work.mesh, self._are_bound
-            bind_normals(mesh, self._values["normals"], *about)
+            bind_normals(mesh, self._values["normals"], self._triangles.clip(0), self._work.mesh, self._are_bound)
         stamp_space(mesh)
         keep(mesh, self._now)
         mesh.update()

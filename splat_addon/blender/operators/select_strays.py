@@ -9,12 +9,13 @@ from bpy.props import FloatProperty
 
 from ...sampling.points.strayness import strayness
 from ..doors import register_classes_factory
+from ..fingerprints import of_array
 from ..geometry.attributes import has_surfels, read_field
 from ..ids import POINT_ATTRIBUTES, SELECT_STRAYS
 from ..spoken import said
 
-#: What was found last, so that another strength needs no search: what was looked at, and how stray it is.
-_last: tuple[tuple[np.ndarray, ...], np.ndarray] | None = None
+#: What was found last, so that another strength needs no search: checksums of what was looked at, and how stray it is.
+_last: tuple[list[str], np.ndarray] | None = None
 
 _FIELDS = "positions", "scales", "normals"
 
@@ -22,13 +23,14 @@ _FIELDS = "positions", "scales", "normals"
 def _how_stray(mesh: bpy.types.Mesh) -> np.ndarray:
     """(N,) `strayness` of the surfels of a mesh, whose unusable ones are as stray as can be."""
     global _last
-    given = tuple(read_field(mesh, POINT_ATTRIBUTES[name], mesh.name) for name in _FIELDS)
-    if _last is None or not all(map(np.array_equal, _last[0], given)):
+    given = [read_field(mesh, POINT_ATTRIBUTES[name], mesh.name) for name in _FIELDS]
+    told = list(map(of_array, given))
+    if _last is None or _last[0] != told:
         positions, scales, normals = given
         radii, found = scales[:, :2].max(axis=1, initial=0.0), np.full(len(positions), np.inf)
         is_usable = np.isfinite(np.hstack(given)).all(axis=1) & (scales[:, :2] > 0).all(axis=1)
         found[is_usable] = strayness(positions[is_usable], radii[is_usable], normals[is_usable])
-        _last = given, found
+        _last = told, found
     return _last[1]
 
 
