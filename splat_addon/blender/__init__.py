@@ -22,6 +22,7 @@ from .conversion import (
     other_engines,
     points_settings,
     prediction,
+    series,
     source_record,
 )
 from .engine import final_render, render_engine, render_passes
@@ -63,6 +64,7 @@ MODULES = (
     preferences,
     source_record,
     surfel_files,
+    series,
     bring_back,
     color_watch,
     other_engines,

@@ -45,6 +45,9 @@ OFFSET = "surfels_offset"
 #: Custom property of a scene: the three float64 that were taken from the coordinates of its files.
 SCENE_OFFSET = "surfels_scene_offset"
 
+#: Custom property of a surfel mesh that shows a series of files: the three float64 from which its positions count.
+SERIES_ORIGIN = "surfels_series_origin"
+
 #: Custom property of a surfel mesh: the time from which its attribute `gps_time` counts.
 TIME_START = "gps_time_start"
 
@@ -80,6 +83,9 @@ OBJECT_SETTINGS = "surfel_splatting"
 
 #: A surfel mesh's settings: `mesh.surfel_splatting`.
 MESH_SETTINGS = "surfel_splatting"
+
+#: The numbered files that a surfel mesh shows one after another: `mesh.surfel_series`.
+SERIES = "surfel_series"
 
 #: What a surfel object was made from, and how: `object.surfel_record`.
 SURFEL_RECORD = "surfel_record"

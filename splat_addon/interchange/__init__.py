@@ -17,6 +17,7 @@ from .gaussians import DEFAULT_FLATNESS, Gaussians, flat_gaussians, harmonic_col
 from .offsets import middle_of, needs_offset, offset_for
 from .placement import joined, transformed
 from .points import ATTRIBUTES, Points
+from .series import file_numbered, numbered_files
 from .surfel_ply import PlyPortions, StoredSurfels, read_ply, write_ply
 
 __all__ = [
@@ -29,12 +30,14 @@ __all__ = [
     "Points",
     "ReadingCancelled",
     "StoredSurfels",
+    "file_numbered",
     "flat_gaussians",
     "followed",
     "harmonic_colors",
     "joined",
     "middle_of",
     "needs_offset",
+    "numbered_files",
     "offset_for",
     "read_contents",
     "read_ply",

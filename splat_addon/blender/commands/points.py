@@ -15,6 +15,7 @@ from ...interchange import FLOAT_COLORS
 from ..conversion.file_import import FileImport
 from ..conversion.points_conversion import PointsBatch
 from ..conversion.points_settings import PointsProperties, keywords, viewpoint
+from ..conversion.series import begin_series, first_shown
 from ..conversion.source_record import SurfelPointsSettings
 from ..geometry.points_extraction import has_points
 from ..ids import OBJECT_SETTINGS
@@ -50,6 +51,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="what the colours of files show, if not their own",
     )
     parser.add_argument(
+        "--series", action="store_true", help="show the numbered files beside FILE at the frames of their numbers"
+    )
+    parser.add_argument(
         "--plain", action="store_true", help="leave render settings, colours and the camera of files as they are"
     )
     for name in PointsProperties.__annotations__:
@@ -79,7 +83,9 @@ def _import_files(options: argparse.Namespace) -> None:
         # nothing of Blender's startup file belongs to the scan
         bpy.ops.wm.read_homefile(use_empty=True)
     for path in options.files:
-        work = FileImport(str(Path(path).absolute()), options, bpy.context, options.float_colors)
+        path, scene = str(Path(path).absolute()), bpy.context.scene
+        shown, offset = first_shown(path, scene) if options.series else (path, 0)
+        work = FileImport(shown, options, scene, options.float_colors)
         try:
             work.run()
             made = work.place(bpy.context)
@@ -89,6 +95,8 @@ def _import_files(options: argparse.Namespace) -> None:
             work.show(bpy.context, made)
         if options.color_by:
             getattr(made, OBJECT_SETTINGS).color_by = options.color_by
+        if options.series:
+            work.notes.append(begin_series(made, path, offset, options, options.float_colors, shown))
         print(f"{work.name}: {len(work.surfels):,} surfels", flush=True)
         for note in work.notes:
             print(f"{work.name}: {note}", flush=True)
@@ -96,7 +104,7 @@ def _import_files(options: argparse.Namespace) -> None:
 
 def _convert_objects(options: argparse.Namespace) -> None:
     sources = _sources(options.objects)
-    batch = PointsBatch(sources, keywords(options), lambda: viewpoint(options, bpy.context), options.flatness)
+    batch = PointsBatch(sources, keywords(options), lambda: viewpoint(options, bpy.context.scene), options.flatness)
     for conversion in batch.prepared(bpy.context):
         batch.sample(conversion)
     place(batch, options, "POINTS")

@@ -15,6 +15,7 @@ from ...doubts import doubts
 from ...interchange import Gaussians, Points, read_contents
 from ...sampling import surfels_from_points
 from ...surfels import Surfels
+from ..geometry.attributes import fill, offset_of
 from ..geometry.scan_attributes import write_scan_attributes
 from ..geometry.scene_offset import keep_offset, offset_for_scan, scene_offset, taken_from
 from ..geometry.sources import is_surfel_object
@@ -31,13 +32,13 @@ _READING = 0.2
 class FileImport:
     """`run` reads the file, in any thread; `place` then adds the object.
 
-    share: the finished share. points: how many were read so far. is_cancelled: set from outside.
+    path: of the file. share: the finished share. points: how many were read so far. is_cancelled: set from outside.
     """
 
-    def __init__(self, path: str, properties: PointsProperties, context: bpy.types.Context, float_colors: str):
-        self.name, self._path = Path(path).name, path
+    def __init__(self, path: str, properties: PointsProperties, scene: bpy.types.Scene, float_colors: str):
+        self.name, self.path = Path(path).name, path
         self._keywords, self._flatness, self._colors = keywords(properties), properties.flatness, float_colors
-        self._eye, self._offset = viewpoint(properties, context), scene_offset(context.scene)
+        self._eye, self._offset = viewpoint(properties, scene), scene_offset(scene)
         self._attributes, self._rows = {}, None
         self._is_captured, self._has_colors, self._scanner = True, True, None
         self.share, self.points, self.is_cancelled = 0.0, 0, False
@@ -51,7 +52,7 @@ class FileImport:
             self.points = points
             return self._go_on(_READING * share, told)
 
-        contents = read_contents(self._path, self._flatness, self._colors, reading)
+        contents = read_contents(self.path, self._flatness, self._colors, reading)
         if isinstance(contents, Points):
             self.surfels = self._surfels_of(contents, told)
         else:
@@ -93,15 +94,30 @@ class FileImport:
 
     def place(self, context: bpy.types.Context) -> bpy.types.Object:
         """Add the surfel object to the active collection. Raises ValueError as `placed`."""
+        surfels = self._in_scene(context.scene)
+        made = add_surfel_object(Path(self.name).stem, surfels, Matrix(), [active_collection(context)])
+        self._write_attributes(made.data)
+        return made
+
+    def refill(self, mesh: bpy.types.Mesh, scene: bpy.types.Scene, origin: np.ndarray) -> None:
+        """Let a mesh show what was read instead of what it has. origin: (3,) from which its positions count, in the
+        scene's coordinates."""
+        surfels = self._in_scene(scene)
+        moved = (surfels.positions + (surfels.origin - origin)).astype(np.float32)
+        fill(mesh, replace(surfels, positions=moved, origin=np.zeros(3)), offset_of(mesh))
+        self._write_attributes(mesh)
+
+    def _in_scene(self, scene: bpy.types.Scene) -> Surfels:
+        """What was read, in the scene's coordinates and working space; it may give the scene its offset."""
         surfels = surfels_from_rec709(self.surfels)
         if self._offset is None:
-            offset = taken_from(context.scene, surfels.origin)
-            surfels = replace(surfels, origin=surfels.origin - offset)
-        elif note := keep_offset(context.scene, self._offset):
+            return replace(surfels, origin=surfels.origin - taken_from(scene, surfels.origin))
+        if note := keep_offset(scene, self._offset):
             self.notes.append(note)
-        made = add_surfel_object(Path(self.name).stem, surfels, Matrix(), [active_collection(context)])
-        write_scan_attributes(made.data, self._attributes, self._rows)
-        return made
+        return surfels
+
+    def _write_attributes(self, mesh: bpy.types.Mesh) -> None:
+        write_scan_attributes(mesh, self._attributes, self._rows)
 
     def show(self, context: bpy.types.Context, made: bpy.types.Object) -> None:
         """Let the first picture of what `place` made be right: choose the colours of a scan that has none, the look of

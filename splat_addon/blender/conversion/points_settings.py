@@ -114,14 +114,14 @@ def keywords(properties: PointsProperties) -> dict:
     return {name: kind(getattr(properties, name)) for name, kind in _KEYWORDS.items()} | {"crease_angle": angle}
 
 
-def viewpoint(properties: PointsProperties, context: bpy.types.Context) -> Vector | None:
+def viewpoint(properties: PointsProperties, scene: bpy.types.Scene) -> Vector | None:
     """The point that normals face, in world space; None: outward. Raises ValueError if the scene has no camera."""
     if properties.facing == "CURSOR":
-        return context.scene.cursor.location.copy()
+        return scene.cursor.location.copy()
     if properties.facing == "CAMERA":
-        if context.scene.camera is None:
+        if scene.camera is None:
             raise ValueError("The scene has no camera that the normals could face; add one or choose another side.")
-        return context.scene.camera.matrix_world.translation.copy()
+        return scene.camera.matrix_world.translation.copy()
     return None
 
 

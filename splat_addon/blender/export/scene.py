@@ -22,6 +22,7 @@ from ...surfels import Surfels
 from ..conversion.changed_sources import ChangedSources
 from ..conversion.color_watch import out_of_date
 from ..conversion.placement import finite_matrix
+from ..conversion.series import why_not_shown
 from ..conversion.source_record import is_stood_in, stood_in
 from ..geometry.attributes import (
     Points,
@@ -271,7 +272,10 @@ class _Things:
 
     def _fill(self, kind: _Kind, entry: bpy.types.DepsgraphObjectInstance) -> None:
         """Find what an entry shows. Raises ValueError with a sentence if it cannot be drawn."""
-        object_, what, notes = entry.object, _content(entry), kind.notes
+        object_, notes = entry.object, kind.notes
+        if sentence := why_not_shown(object_.original.data):
+            raise ValueError(sentence)
+        what = _content(entry)
         if not what:
             if object_.type in _NOT_DRAWN and not shows_as_points(object_.original):
                 notes.add(_not_drawn(object_))

@@ -23,6 +23,7 @@ from ..conversion.points_settings import (
     draw_points_properties,
     is_mild,
 )
+from ..conversion.series import begin_series, first_shown
 from ..conversion.surfel_objects import active_collection, add_object_of, select_only
 from ..geometry.attributes import offset_of, read_surfels, set_offset
 from ..geometry.scene_offset import taken_from
@@ -57,6 +58,15 @@ tell"""
         default=False,
     )
 
+    is_series: BoolProperty(
+        name="Numbered Series",
+        description=(
+            "Show each of the files whose names differ in their last number at the frame of its number, such as those "
+            "of a scan that moves. A file is read when its frame is shown"
+        ),
+        default=False,
+    )
+
     float_colors: EnumProperty(
         name="Float Colors",
         description="What the file's colours mean if they are floats and the file does not say it",
@@ -87,7 +97,7 @@ tell"""
     def draw(self, context):
         self.layout.use_property_split = True
         self.layout.use_property_decorate = False
-        for name in ("has_scan_look", "keeps_in_file", "float_colors"):
+        for name in ("has_scan_look", "keeps_in_file", "is_series", "float_colors"):
             self.layout.prop(self, name)
         header, body = self.layout.panel("surfels_import_gaussians")
         header.label(text="Gaussian Splats")
@@ -106,6 +116,9 @@ tell"""
     def execute(self, context):
         # confirmed in the file browser or a dialog; the same operator may be repeated from the redo panel
         is_asked, self._is_asked = getattr(self, "_is_asked", False), False
+        if self.is_series and (self.keeps_in_file or self._holds_blocks()):
+            self.report({"ERROR"}, said("The files of a series are shown from memory; they cannot be files of blocks"))
+            return {"CANCELLED"}
         if not self._holds_blocks():
             return self.run_in_thread(context) if is_asked else self.run_now(context)
         try:
@@ -124,8 +137,11 @@ tell"""
         return self._name.endswith(SUFFIX)
 
     def _begin(self, context):
+        path = absolute(self.filepath)
+        if self.is_series:
+            path, self._frame_offset = first_shown(path, context.scene)
         if not self.keeps_in_file:
-            return FileImport(absolute(self.filepath), self, context, self.float_colors)
+            return FileImport(path, self, context.scene, self.float_colors)
         # repeated from the redo panel, it replaces the file whose object was undone
         own = getattr(self, "_kept", "")
         return Keeping(absolute(self.filepath), absolute(f"//{Path(self._name).stem}{SUFFIX}"), own)
@@ -138,6 +154,11 @@ tell"""
             select_only(context, [made])
             self.report({"INFO"}, said("{name}: {count:,} surfels", name=self._name, count=len(work.surfels)))
             self._tell(work.notes)
+            if self.is_series:
+                path = relative_path(absolute(self.filepath))
+                self._tell([begin_series(made, path, self._frame_offset, self, self.float_colors, work.path)])
+                # Blender draws nothing else while a render reads its next frame
+                context.scene.render.use_lock_interface = True
             self._tell_place(made, work.surfels)
         else:
             self._finish_keeping(context, work)

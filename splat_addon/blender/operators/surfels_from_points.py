@@ -52,7 +52,9 @@ directions are estimated from neighbouring points"""
             self.layout.prop(self, name)
 
     def _new_batch(self, context):
-        return PointsBatch(selected_points(context), keywords(self), lambda: viewpoint(self, context), self.flatness)
+        return PointsBatch(
+            selected_points(context), keywords(self), lambda: viewpoint(self, context.scene), self.flatness
+        )
 
 
 def draw_points_menu_entry(menu, context):

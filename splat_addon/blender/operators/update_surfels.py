@@ -101,7 +101,7 @@ def _batch(made: bpy.types.Object, context: bpy.types.Context) -> Batch:
             raise ValueError(f"Its source {source.name!r} is not in this view layer; put it back into the scene first.")
     if record.kind == "POINTS":
         points = record.points
-        return PointsBatch(sources, keywords(points), lambda: viewpoint(points, context), points.flatness)
+        return PointsBatch(sources, keywords(points), lambda: viewpoint(points, context.scene), points.flatness)
     return ConversionBatch(sources, choices(record.mesh), sources[0])
 
 

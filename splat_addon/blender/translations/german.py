@@ -1200,4 +1200,32 @@ GERMAN = {
         "Matrix der Surfels im Raum der ersten Quelle, als sie umgewandelt wurden"
     ),
     "Place": "Ort",
+    "Added to the number of a file to give the frame at which it is shown": (
+        "Wird zur Nummer einer Datei addiert und ergibt das Einzelbild, in dem sie gezeigt wird"
+    ),
+    "Frame Offset": "Einzelbildversatz",
+    "Numbered Series": "Nummerierte Serie",
+    (
+        "Show each of the files whose names differ in their last number at the frame of its number, such as "
+        "those of a scan that moves. A file is read when its frame is shown"
+    ): (
+        "Jede der Dateien, deren Namen sich in der letzten Nummer unterscheiden, im Einzelbild ihrer Nummer "
+        "zeigen, etwa die eines bewegten Scans. Eine Datei wird gelesen, wenn ihr Einzelbild gezeigt wird"
+    ),
+    "One of several numbered files, each of which is shown at the frame of its number": (
+        "Eine von mehreren nummerierten Dateien, von denen jede im Einzelbild ihrer Nummer gezeigt wird"
+    ),
+    "Series": "Serie",
+    "What the files' colours mean if they are floats and the files do not say it": (
+        "Was die Farben der Dateien bedeuten, wenn sie Gleitkommazahlen sind und die Dateien es nicht sagen"
+    ),
+    (
+        "The name has no number that counts the files of a series; import it without Numbered Series"
+    ): "Der Name hat keine Nummer, die die Dateien einer Serie zählt; ohne Nummerierte Serie importieren",
+    "Took {count:,} files as a series, for the frames {first:,} to {last:,}": (
+        "{count:,} Dateien als Serie genommen, für die Einzelbilder {first:,} bis {last:,}"
+    ),
+    "The files of a series are shown from memory; they cannot be files of blocks": (
+        "Die Dateien einer Serie werden aus dem Speicher gezeigt; es können keine Dateien aus Blöcken sein"
+    ),
 }

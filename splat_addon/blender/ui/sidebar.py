@@ -23,6 +23,7 @@ from ..conversion.points_settings import (
     draw_gaussian_properties,
     draw_points_edges,
 )
+from ..conversion.series import series_of
 from ..conversion.source_record import record_of, sources_of
 from ..doors import register_classes_factory
 from ..geometry.scene_offset import scene_offset, shown
@@ -209,6 +210,11 @@ def _draw_files(layout: bpy.types.UILayout, what: Chosen, context: bpy.types.Con
         return
     if what.made is not None and file_of(what.made):
         files.prop(getattr(what.made.data, MESH_SETTINGS), "file")
+    elif what.made is not None and (series := series_of(what.made.data)).path:
+        files.prop(series, "path")
+        files.prop(series, "frame_offset")
+        if series.why_not:
+            write(files, series.why_not, context)
     elif what.made is not None:
         files.operator(STORE_SURFELS, icon="FILE_NEW")
     row = files.row(align=True)

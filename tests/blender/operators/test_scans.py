@@ -169,7 +169,7 @@ class Settings(PointsProperties):
 @pytest.mark.parametrize(("stage", "error"), [("Reading 400 points", ReadingCancelled), ("0%", SamplingCancelled)])
 def test_esc_ends_reading_and_converting(stage, error, tmp_path):
     (tmp_path / "tile").write_bytes(tile(CORNERS[0])[0])
-    work = FileImport(str(tmp_path / "tile"), Settings(), bpy.context, "DISPLAY")
+    work = FileImport(str(tmp_path / "tile"), Settings(), bpy.context.scene, "DISPLAY")
 
     def press(share):
         work.is_cancelled |= stage in work.status()
