@@ -25,6 +25,7 @@ UPDATE_SURFELS = "object.surfels_update"
 STORE_SURFELS = "object.surfels_to_file"
 FILTER_SCAN = "object.surfels_filter"
 SELECT_STRAYS = "object.surfels_select_strays"
+CAMERA_OF_SCANNER = "object.surfels_scanner_camera"
 SHOW_SURFELS = "view3d.surfels_show"
 SURFELS_OR_SOURCE = "object.surfels_or_source"
 
@@ -47,6 +48,10 @@ SCENE_OFFSET = "surfels_scene_offset"
 
 #: Custom property of a surfel mesh that shows a series of files: the three float64 from which its positions count.
 SERIES_ORIGIN = "surfels_series_origin"
+
+#: Custom properties of a surfel mesh: x, y, z and time of each place of the scanner, in the mesh's space; and true if
+#: they are estimated, of a flight.
+SCANNER_PATH, SCANNER_FLEW = "surfels_scanner_path", "surfels_scanner_flew"
 
 #: Custom property of a surfel mesh: the time from which its attribute `gps_time` counts.
 TIME_START = "gps_time_start"

@@ -23,7 +23,7 @@ _FROM = Vector((0.45, -1.0, 0.65)).normalized()
 _ASIDE, _MOST = 0.002, 100_000
 
 #: Focal length in millimetres of a camera in a room, and directions in which it looks for the farthest wall.
-_WIDE, _SECTORS = 20.0, 24
+WIDE, _SECTORS = 20.0, 24
 
 #: How many times as far as a scan reaches 3D views show.
 _VIEWS = 5.0
@@ -71,7 +71,7 @@ def add_camera(
     low, high = np.quantile(some, (_ASIDE, 1 - _ASIDE), axis=0)
     extent = float(np.linalg.norm(high - low))
     if scanner is not None and ((low < scanner) & (scanner < high)).all():
-        data.lens = _WIDE
+        data.lens = WIDE
         data.clip_start, data.clip_end = extent / 1e4, 10 * extent
         camera.location = scanner
         camera.rotation_euler = _along_the_farthest(some - scanner).to_track_quat("-Z", "Y").to_euler()

@@ -17,6 +17,7 @@ from .gaussians import DEFAULT_FLATNESS, Gaussians, flat_gaussians, harmonic_col
 from .offsets import middle_of, needs_offset, offset_for
 from .placement import joined, transformed
 from .points import ATTRIBUTES, Points
+from .scanner_paths import scanner_path
 from .series import file_numbered, numbered_files
 from .surfel_ply import PlyPortions, StoredSurfels, read_ply, write_ply
 
@@ -41,6 +42,7 @@ __all__ = [
     "offset_for",
     "read_contents",
     "read_ply",
+    "scanner_path",
     "transformed",
     "write_gaussian_ply",
     "write_ply",

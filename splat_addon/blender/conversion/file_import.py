@@ -12,11 +12,11 @@ import numpy as np
 from mathutils import Matrix
 
 from ...doubts import doubts
-from ...interchange import Gaussians, Points, read_contents
+from ...interchange import Gaussians, Points, read_contents, scanner_path
 from ...sampling import surfels_from_points
 from ...surfels import Surfels
 from ..geometry.attributes import fill, offset_of
-from ..geometry.scan_attributes import write_scan_attributes
+from ..geometry.scan_attributes import keep_scanner_path, write_scan_attributes
 from ..geometry.scene_offset import keep_offset, offset_for_scan, scene_offset, taken_from
 from ..geometry.sources import is_surfel_object
 from ..scan_look import add_camera, color_without_colors, give_scan_look, widen_views
@@ -39,7 +39,7 @@ class FileImport:
         self.name, self.path = Path(path).name, path
         self._keywords, self._flatness, self._colors = keywords(properties), properties.flatness, float_colors
         self._eye, self._offset = viewpoint(properties, scene), scene_offset(scene)
-        self._attributes, self._rows = {}, None
+        self._attributes, self._rows, self._scanner_path = {}, None, None
         self._is_captured, self._has_colors, self._scanner = True, True, None
         self.share, self.points, self.is_cancelled = 0.0, 0, False
         self.notes: list[str] = []
@@ -83,7 +83,7 @@ class FileImport:
             progress=lambda share: self._go_on(_READING + (1 - _READING) * share, told),
             **self._keywords,
         )
-        self._attributes, self._rows = points.attributes, report.kept
+        self._attributes, self._rows, self._scanner_path = points.attributes, report.kept, scanner_path(points)
         self._has_colors = points.colors is not None
         if scanners is not None:  # the first place that is known
             self._scanner = next(iter(scanners[np.isfinite(scanners).all(axis=1)])) - self._offset
@@ -96,7 +96,7 @@ class FileImport:
         """Add the surfel object to the active collection. Raises ValueError as `placed`."""
         surfels = self._in_scene(context.scene)
         made = add_surfel_object(Path(self.name).stem, surfels, Matrix(), [active_collection(context)])
-        self._write_attributes(made.data)
+        self._write_attributes(made.data, surfels.origin)
         return made
 
     def refill(self, mesh: bpy.types.Mesh, scene: bpy.types.Scene, origin: np.ndarray) -> None:
@@ -105,7 +105,7 @@ class FileImport:
         surfels = self._in_scene(scene)
         moved = (surfels.positions + (surfels.origin - origin)).astype(np.float32)
         fill(mesh, replace(surfels, positions=moved, origin=np.zeros(3)), offset_of(mesh))
-        self._write_attributes(mesh)
+        self._write_attributes(mesh, origin)
 
     def _in_scene(self, scene: bpy.types.Scene) -> Surfels:
         """What was read, in the scene's coordinates and working space; it may give the scene its offset."""
@@ -116,8 +116,10 @@ class FileImport:
             self.notes.append(note)
         return surfels
 
-    def _write_attributes(self, mesh: bpy.types.Mesh) -> None:
+    def _write_attributes(self, mesh: bpy.types.Mesh, origin: np.ndarray) -> None:
         write_scan_attributes(mesh, self._attributes, self._rows)
+        if self._offset is not None:
+            keep_scanner_path(mesh, self._scanner_path, self._offset + origin)
 
     def show(self, context: bpy.types.Context, made: bpy.types.Object) -> None:
         """Let the first picture of what `place` made be right: choose the colours of a scan that has none, the look of

@@ -1228,4 +1228,27 @@ GERMAN = {
     "The files of a series are shown from memory; they cannot be files of blocks": (
         "Die Dateien einer Serie werden aus dem Speicher gezeigt; es können keine Dateien aus Blöcken sein"
     ),
+    (
+        "Add a camera that goes where the scanner went during the scene's frames: from place to place, or "
+        "along the flight. At a single place it turns around once"
+    ): (
+        "Eine Kamera hinzufügen, die während der Einzelbilder der Szene den Weg des Scanners nimmt: von Ort "
+        "zu Ort oder entlang des Fluges. An einem einzigen Ort dreht sie sich einmal um sich selbst"
+    ),
+    "Camera from Scanner": "Kamera vom Scanner",
+    "Where the camera looks": "Wohin die Kamera blickt",
+    "At the scan from a flight, and ahead from places on the ground": (
+        "Von einem Flug aus auf den Scan, von Orten am Boden aus nach vorn"
+    ),
+    "Ahead": "Voraus",
+    "Where it goes, level": "Wohin sie sich bewegt, waagrecht",
+    "At the Scan": "Auf den Scan",
+    "At the middle of the surfels": "Auf die Mitte der Surfel",
+    "Select the surfels of a scan whose file tells where the scanner was": (
+        "Die Surfel eines Scans auswählen, dessen Datei sagt, wo der Scanner war"
+    ),
+    "{count:,} places of the scanner, from frame {first} to {last}": (
+        "{count:,} Orte des Scanners, von Einzelbild {first} bis {last}"
+    ),
+    "Look": "Blick",
 }

@@ -26,9 +26,11 @@ from ..conversion.points_settings import (
 from ..conversion.series import series_of
 from ..conversion.source_record import record_of, sources_of
 from ..doors import register_classes_factory
+from ..geometry.scan_attributes import scanner_path_of
 from ..geometry.scene_offset import scene_offset, shown
 from ..geometry.surfel_files import file_of
 from ..ids import (
+    CAMERA_OF_SCANNER,
     CONVERSION_SETTINGS,
     EXPORT_PLY,
     FILTER_SCAN,
@@ -197,6 +199,8 @@ def _draw_scan(layout: bpy.types.UILayout, what: Chosen) -> None:
     layout.operator(SCAN_LOOK, icon="SHADING_TEXTURE")
     layout.operator(SELECT_STRAYS, icon="RESTRICT_SELECT_OFF")
     layout.operator(FILTER_SCAN, icon="FILTER")
+    if len(scanner_path_of(what.made.data)):
+        layout.operator(CAMERA_OF_SCANNER, icon="OUTLINER_OB_CAMERA")
     column = layout.column()
     column.use_property_split = True
     column.use_property_decorate = False
