@@ -28,6 +28,7 @@ MAY_IMPORT = {
     "doubts": {"surfels"},
     "primaries": {"surfels"},
     "images": set(),
+    "differences": set(),
     "faults": set(),
     "shading_nodes": {"images"},
     "sampling": {
@@ -77,7 +78,9 @@ MAY_IMPORT = {
         "interchange",
         "whole_files",
     },
+    "trade": {"differences", "rendering", "whole_files"},
     "reference": {
+        "differences",
         "runs",
         "vectors",
         "claims",
@@ -97,6 +100,7 @@ MAY_IMPORT = {
         "claims",
         "doubts",
         "faults",
+        "trade",
         "surfels",
         "primaries",
         "sampling",

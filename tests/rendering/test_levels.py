@@ -202,6 +202,15 @@ def test_a_tolerance_of_0_is_the_picture_of_the_surfels_bit_by_bit(on_device):
         np.testing.assert_array_equal(getattr(after, name), getattr(alone, name))
 
 
+def test_surfels_that_had_levels_are_drawn_without_in_another_storage(render):
+    """All data of one set is stored in one order."""
+    scene, camera = far_torus()
+    short = replace(EVERY, storage="16-bit")
+    alone = render(scene, camera, short)
+    render(scene, camera, SOME)
+    assert psnr(render(scene, camera, short).color, alone.color) > 70
+
+
 def test_what_merges_nothing_is_drawn_as_it_is(render):
     """All surfels are drawn individually, although they have a hierarchy."""
     scene, camera = far_torus()

@@ -168,7 +168,8 @@ class Resources:
 
         Data stored with levels also serves draws without levels, because the surfels come first.
         """
-        wanted, held = self._wanted(owner, kind, made_from, levels), self._held.setdefault(owner, {})
+        levels, held = self._ordered_with(owner, levels), self._held.setdefault(owner, {})
+        wanted = *made_from, levels
         is_there = kind in held and held[kind][0] == wanted
         if not is_there and self.loading is not None and not self.loading.admits(owner):
             self._load(owner, kind, made_from, levels, pack, may_have_levels and levels is None)
@@ -180,16 +181,16 @@ class Resources:
 
         return self._once(owner, kind, wanted, uploaded)
 
-    def _wanted(self, owner: Surfels, kind: str, made_from: tuple, levels: Hierarchy | None) -> tuple:
-        """What data is made from, as `_held` has it."""
-        (*from_before, levels_before), _ = self._held.get(owner, {}).get(kind, ((None,), None))
-        is_kept = levels is None and tuple(from_before) == made_from
-        return (*made_from, levels_before if is_kept else levels)
+    def _ordered_with(self, owner: Surfels, levels: Hierarchy | None) -> Hierarchy | None:
+        """The hierarchy that the surfels are stored with: if none is asked for, the one of the order that they have, so
+        that all data of one set is in one order."""
+        (of_order,), _ = self._held.get(owner, {}).get("order", ((None,), None))
+        return of_order if levels is None else levels
 
     def _order(self, surfels: Surfels, levels: Hierarchy | None = None) -> np.ndarray:
         """The order in which the surfels are stored, computed once."""
-        wanted = self._wanted(surfels, "order", (), levels)
-        return self._once(surfels, "order", wanted, lambda: stored_order(surfels, levels))
+        levels = self._ordered_with(surfels, levels)
+        return self._once(surfels, "order", (levels,), lambda: stored_order(surfels, levels))
 
     def _load(self, owner: Surfels, kind: str, made_from: tuple, levels: Hierarchy | None, pack, builds: bool) -> None:
         """Have data made in the background, and with `builds` a hierarchy before."""

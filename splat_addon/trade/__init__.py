@@ -1,0 +1,26 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What settings cost and gain in one scene: drawn with each of them, and compared with its exact pictures.
+
+scene, camera, settings -> exact pictures -> a row for each choice -> a page, or the choice that keeps a target
+"""
+
+from .choices import Choice, choices_for, series_of
+from .exact import Cancelled, ExactPictures
+from .measuring import Row, measure
+from .page import page
+from .target import Pace, Promise, Target, chosen
+
+__all__ = (
+    "Cancelled",
+    "Choice",
+    "ExactPictures",
+    "Pace",
+    "Promise",
+    "Row",
+    "Target",
+    "choices_for",
+    "chosen",
+    "measure",
+    "page",
+    "series_of",
+)

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The settings that are tried in a scene: those it has, the presets with more and fewer samples, and for what the scene
+contains one number at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+
+from ..rendering import PRESETS, FramePlan, Settings
+
+#: Samples that each way of filtering a pixel is tried with, for as long as it gains by more.
+BALANCED_SAMPLES = (1, 2, 4, 8, 16, 32)
+FINAL_SAMPLES = ((2, 1), (3, 1), (4, 1), (6, 1), (8, 1))
+
+#: The values of a number that are tried, if it has another.
+TOLERANCES, SHADOW_RESOLUTIONS, LAYERS = (0.0, 2.0, 4.0), (512, 2048), (2, 4, 8)
+
+
+@dataclass(frozen=True)
+class Choice:
+    """name: what a person sees. changes: fields of `Settings` with their values. series: choices of one series differ
+    in their number of samples alone."""
+
+    name: str
+    changes: dict = field(hash=False)
+    series: str = ""
+
+    def of(self, settings: Settings) -> Settings:
+        """`settings` with the changes."""
+        return replace(settings, **self.changes)
+
+
+def choices_for(settings: Settings, plan: FramePlan) -> list[Choice]:
+    """What to try, first the settings as they are, and nothing twice. plan: of a frame, which tells what the scene
+    contains."""
+    found, seen = [], set()
+    for choice in (Choice("As set", {}), *_series(settings), *_numbers(settings, plan)):
+        made = choice.of(settings)
+        if made not in seen:
+            seen.add(made)
+            found.append(choice)
+    return found
+
+
+def series_of(settings: Settings) -> list[Choice]:
+    """The two ways of filtering a pixel, each with more and fewer samples."""
+    return list(_series(settings))
+
+
+def _series(settings: Settings) -> Iterator[Choice]:
+    preview, balanced, final = (PRESETS[name] for name in ("preview", "balanced", "final"))
+    yield Choice(preview.label, {**preview.values, "samples": 1})
+    for samples in BALANCED_SAMPLES:
+        changes = {**balanced.values, "samples": samples}
+        yield Choice(f"{balanced.label}, {_counted(samples)}", changes, balanced.label)
+    for supersampling, samples in FINAL_SAMPLES:
+        changes = {**final.values, "supersampling": supersampling, "samples": samples}
+        yield Choice(f"{final.label}, {supersampling} x {supersampling}", changes, final.label)
+
+
+def _counted(samples: int) -> str:
+    return "1 sample" if samples == 1 else f"{samples} samples"
+
+
+def _numbers(settings: Settings, plan: FramePlan) -> Iterator[Choice]:
+    for tolerance in TOLERANCES:
+        yield Choice(f"As set, Detail Tolerance {tolerance:g}", {"detail_tolerance": tolerance})
+    passes = {each.name for each in plan.passes}
+    if "shadow_maps" in passes:
+        for texels in SHADOW_RESOLUTIONS:
+            yield Choice(f"As set, Shadow Resolution {texels}", {"shadow_resolution": texels})
+    if "peel" in passes:
+        for layers in LAYERS:
+            yield Choice(f"As set, {layers} Layers", {"layers": layers})
+    yield Choice("As set, Surfel Storage 16-bit", {"storage": "16-bit"})
+    yield Choice("As set, Blend Precision Float 16", {"sum_format": "float16"})
