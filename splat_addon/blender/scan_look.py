@@ -11,7 +11,7 @@ from mathutils import Vector
 
 from ..rendering.presets import SCAN_LOOK
 from .ids import ENGINE, ENGINE_LABEL, OBJECT_SETTINGS, RENDER_SETTINGS
-from .properties import set_eye_dome
+from .render_settings.light import set_eye_dome
 
 #: Display values as the scanner's camera had them.
 VIEW_TRANSFORM = "Standard"

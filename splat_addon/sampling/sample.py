@@ -16,6 +16,7 @@ import numpy as np
 
 from ..large_surfels import BLEND_STEPS, LARGE_SIZE, STEPS_OF_LARGE
 from ..normal_fields import NORMAL_FIELDS, turned
+from ..runs import ranges
 from ..surfels import LAYOUT, Surfels, empty_surfels
 from .attributes.blend_depths import blend_depths
 from .attributes.lifts import edge_bulges, lifts
@@ -333,15 +334,19 @@ def _fill(filler: SampleFiller, images: tuple[Spans, ...], report: Callable[[flo
     limit = min(BATCH, max(BATCH // 4, total // 8))
     jobs, done = [], 0
     for axis, spans in enumerate(images):
+        order = filler.order(spans)
+        first = None if order is None else (done + np.cumsum(spans.counts, dtype=np.intp) - spans.counts)[order]
+        spans = spans if order is None else spans[order]
         # a span costs about as much as a sample
         for part in batches(spans.counts + 1, limit):
             count = int(spans.counts[part].sum(dtype=np.int64))
-            jobs.append(partial(_filled, filler, spans[part], axis, slice(done, done + count)))
+            rows = slice(done, done + count) if first is None else ranges(first[part], spans.counts[part])
             done += count
-    for rows in in_order(jobs):
-        report(rows.stop / total)
+            jobs.append(partial(_filled, filler, spans[part], axis, rows, done))
+    for filled in in_order(jobs):
+        report(filled / total)
 
 
-def _filled(filler: SampleFiller, spans: Spans, axis: int, rows: slice) -> slice:
+def _filled(filler: SampleFiller, spans: Spans, axis: int, rows: slice | np.ndarray, done: int) -> int:
     filler.fill(spans, axis, rows)
-    return rows
+    return done

@@ -45,7 +45,7 @@ TABS = {
 READERS = {
     "light": ("export/shading",),
     "camera": ("cameras",),
-    "render": ("cameras", "engine/final_render", "engine/motion_blur", "properties"),
+    "render": ("cameras", "engine/final_render", "engine/motion_blur", "properties", "render_settings/samples"),
     "view layer": (
         "engine/final_render",
         "engine/motion_blur",
@@ -53,6 +53,7 @@ READERS = {
         "export/scene",
         "materials/material_override",
         "properties",
+        "render_settings/samples",
     ),
     "object": ("export/scene", "export/live_meshes"),
     "material": ("export/shading", "materials/material_surfaces"),

@@ -4,8 +4,9 @@
 import numpy as np
 import pytest
 
-from splat_addon.sampling import Channel, Image, Surface, Texture, Tolerance, VertexColors
+from splat_addon.sampling import Channel, Computed, Image, Surface, Texture, Tolerance, TriangleMesh, VertexColors
 from splat_addon.sampling.materials.surfaces import ALPHA, BLUE, GREEN, RED
+from splat_addon.shading_nodes import ATTRIBUTE, Graph, Step
 from tests.plain import sample_mesh, sample_surface
 
 UVS = np.array([[(0, 0), (1, 0), (1, 1)], [(0, 0), (1, 1), (0, 1)]], float)
@@ -164,3 +165,25 @@ def test_adaptive_sampling_keeps_what_a_texture_changes_and_averages_what_it_doe
 def test_a_channel_of_the_wrong_width_is_refused(wrong):
     with pytest.raises(ValueError, match=r"has . numbers?, not"):
         Surface(**{name: Channel(value) for name, value in wrong.items()})
+
+
+def test_nodes_of_many_materials_colour_each_sample_by_its_place_and_its_own():
+    """Samples are evaluated in the order of their materials, and stay where they were."""
+    side, random = 12, np.random.default_rng(4)
+    x, y = (values.ravel().astype(np.float32) for values in np.meshgrid(np.arange(side + 1), np.arange(side + 1)))
+    first = (np.arange(side)[:, None] * (side + 1) + np.arange(side)).ravel()
+    triangles = np.concatenate([first[:, None] + (0, 1, side + 2), first[:, None] + (0, side + 2, side + 1)])
+    positions = np.stack([x, y, 0 * x], axis=1)
+    factors = random.random(5).astype(np.float32)
+    graphs = [Graph((Step(ATTRIBUTE, (), (0,)), Step("multiplied", (0, (float(f),))))) for f in factors]
+    mesh = TriangleMesh(
+        positions,
+        triangles,
+        corner_colors=np.concatenate([positions, np.ones_like(positions[:, :1])], axis=1)[triangles],
+        materials=random.integers(0, 5, len(triangles)).astype(np.int32),
+        surfaces=tuple(Surface(Channel((1.0, 1.0, 1.0, 1.0), Computed(graph))) for graph in graphs),
+    )
+    surfels = sample_mesh(mesh, spacing=0.2)
+    places = surfels.positions + surfels.origin.astype(np.float32)
+    assert len(np.unique(surfels.materials)) == 5
+    assert np.allclose(surfels.colors[:, :3], places * factors[surfels.materials][:, None], atol=1e-4)

@@ -12,7 +12,7 @@ from ..doors import register_classes_factory
 from ..ids import ENGINE, RENDER_SETTINGS, TEXTS
 from ..mesh_sampling_settings import NUMBERED
 from ..operators.render_preset import draw_presets
-from ..properties import blurs, is_coarser_than_viewport
+from ..render_settings.samples import blurs, is_coarser_than_viewport
 from ..spoken import said
 from .engine_panel import EnginePanel
 from .preset_panels import RENDER_PT_surfel_presets

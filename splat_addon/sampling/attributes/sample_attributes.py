@@ -68,9 +68,24 @@ class SampleFiller:
         self._seams, self._bends, self._bulges = seams, bends, bulges
         self._centres = [grid.centres(axis) for axis in range(3)]
 
-    def fill(self, spans: Spans, axis: int, rows: slice):
+    def order(self, spans: Spans) -> np.ndarray | None:
+        """The order in which spans are filled fastest: graphs of nodes take less time for many samples of one material
+        than for a few of many. None: as they are."""
+        materials = self._mesh.materials
+        if materials is None or not self._sampler.has_graphs:
+            return None
+        of_spans = materials.take(spans.triangles)
+        return None if (of_spans[1:] >= of_spans[:-1]).all() else of_spans.argsort(kind="stable")
+
+    def fill(self, spans: Spans, axis: int, rows: slice | np.ndarray):
         """Write the samples of these spans of the image along `axis` to `rows` of the arrays."""
         out = {name: array[rows] for name, array in self._arrays.items()}
+        self._fill(out, spans, axis)
+        if not isinstance(rows, slice):
+            for name, array in self._arrays.items():
+                array[rows] = out[name]
+
+    def _fill(self, out: SampleTable, spans: Spans, axis: int):
         triangles, of_span = _grouped(spans.triangles)
         first, edges, normals = self._sound_triangles(triangles, axis)
         weights = _SpanWeights(first, edges, normals[axis], axis, of_span, spans)

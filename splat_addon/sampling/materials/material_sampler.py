@@ -50,6 +50,7 @@ class MaterialSampler:
 
     optional: fields of `OPTIONAL_LAYOUT` that vary over any of the surfaces.
     needs_colors, needs_color_steps, needs_uvs, needs_tangents: whether any surface reads them.
+    has_graphs: whether nodes of several surfaces are evaluated.
     """
 
     def __init__(self, surfaces: tuple[Surface, ...]):
@@ -59,6 +60,7 @@ class MaterialSampler:
         textures = [factor for factor in factors if isinstance(factor, Texture)]
         self.optional = tuple(n for n in OPTIONAL_LAYOUT if any(_varies(getattr(s, n, None)) for s in surfaces))
         graphs = [factor.graph for factor in factors if isinstance(factor, Computed)]
+        self.has_graphs = bool(graphs) and len(surfaces) > 1
         self.needs_colors = any(isinstance(f, VertexColors) for f in factors) or any(g.reads_colors for g in graphs)
         self.needs_color_steps = any(graph.reads_colors and graph.looks_beside for graph in graphs)
         self.needs_tangents = any(s.normal_map is not None and s.normal_map.space == "TANGENT" for s in surfaces)

@@ -24,26 +24,36 @@ _DEVIATIONS = 6
 
 def gabor(vector, scale, frequency, anisotropy, angle, direction, dimensions: str) -> np.ndarray:
     """(3, n): value, phase and intensity."""
-    places = [*(vector * scale)][: 2 if dimensions == "2D" else 3]
+    places = np.stack(np.broadcast_arrays(*(vector * scale)))[: 2 if dimensions == "2D" else 3]
     isotropy, frequency = 1 - np.clip(anisotropy, 0, 1), np.maximum(frequency, np.float32(0.001))
-    cells = [np.floor(place) for place in places]
-    inside = [place - cell for place, cell in zip(places, cells, strict=True)]
-    real = imaginary = np.zeros(1, np.float32)
+    cells = np.floor(places)
+    inside = places - cells
+    # many samples lie in each cell
+    cells, of_sample = np.unique(cells, axis=1, return_inverse=True)
+    of_sample = of_sample.ravel()
+    sums = np.zeros((2, places.shape[1]), np.float32)
     for steps in product((-1, 0, 1), repeat=len(places)):
-        steps = [np.float32(step) for step in reversed(steps)]
-        cell = [c + step for c, step in zip(cells, steps, strict=True)]
+        step = np.float32(steps[::-1])[:, None]
         for k in range(0, 3 * _KERNELS, 3):
-            seeds = [[*cell, np.float32([k + j])] for j in range(3)]
-            along = _directions(seeds[0], isotropy, angle, direction)
-            off = [i - step - c for i, step, c in zip(inside, steps, _centre(seeds[1]), strict=True)]
-            square = sum(each * each for each in off)
+            seeds = [[*(cells + step), np.float32([k + j])] for j in range(3)]
+            off = inside - step - np.stack(_centre(seeds[1])).take(of_sample, axis=1)
+            square = (off * off).sum(axis=0)
+            near = np.flatnonzero(square < 1)
+            cell, off, square = of_sample[near], off[:, near], square[near]
+            drawn = [number.take(cell) for number in _of_direction(seeds[0])]
+            along = _directions(drawn, *(_at(given, near) for given in (isotropy, angle, direction)))
             window = np.exp(-np.float32(np.pi) * square) * (1 + np.cos(np.float32(np.pi) * square)) / 2
-            weight = np.where(square >= 1, 0, np.where(random(*seeds[2]) < 0.5, -window, window))
-            turn = np.float32(2 * np.pi) * frequency * sum(o * a for o, a in zip(off, along, strict=True))
-            real, imaginary = real + weight * np.cos(turn), imaginary + weight * np.sin(turn)
+            weight = np.where(random(*seeds[2]).take(cell) < 0.5, -window, window)
+            turn = np.float32(2 * np.pi) * _at(frequency, near) * sum(o * a for o, a in zip(off, along, strict=True))
+            sums[:, near] += weight * np.cos(turn), weight * np.sin(turn)
+    real, imaginary = sums
     largest = np.float32(_DEVIATIONS * np.sqrt(_KERNELS * _SECOND_MOMENT * _INTEGRALS[len(places)]))
     phase = (np.arctan2(imaginary, real) + np.float32(np.pi)) / np.float32(2 * np.pi)
     return np.stack([imaginary / largest / 2 + np.float32(0.5), phase, np.hypot(real, imaginary) / largest])
+
+
+def _at(values: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    return values if values.shape[-1] == 1 else values[..., rows]
 
 
 def _centre(seed: list[np.ndarray]) -> list[np.ndarray]:
@@ -54,19 +64,26 @@ def _centre(seed: list[np.ndarray]) -> list[np.ndarray]:
     return [random(x, y, z, w), random(z, x, w, y), random(w, z, y, x)]
 
 
-def _directions(seed: list[np.ndarray], isotropy, angle, direction) -> list[np.ndarray]:
-    """The unit vector along which a kernel oscillates."""
+def _of_direction(seed: list[np.ndarray]) -> list[np.ndarray]:
+    """The random numbers of the direction of a kernel."""
     if len(seed) == 3:
-        angle = angle + (random(*seed) - np.float32(0.5)) * np.float32(np.pi) * isotropy
+        return [random(*seed)]
+    x, y, z, w = seed
+    return [random(x, y, z, w), random(z, x, w, y)]
+
+
+def _directions(drawn: list[np.ndarray], isotropy, angle, direction) -> list[np.ndarray]:
+    """The unit vector along which a kernel oscillates."""
+    if len(drawn) == 1:
+        angle = angle + (drawn[0] - np.float32(0.5)) * np.float32(np.pi) * isotropy
         return [np.cos(angle), np.sin(angle)]
     base = unit(direction)
     if not (isotropy != 0).any():
         return [*base]
-    x, y, z, w = seed
-    steep = np.arccos(np.clip(base[2], -1, 1)) + random(x, y, z, w) * np.float32(np.pi) * isotropy
+    steep = np.arccos(np.clip(base[2], -1, 1)) + drawn[0] * np.float32(np.pi) * isotropy
     flat = np.hypot(base[0], base[1])
     around = np.where(base[1] < 0, -1, 1) * np.arccos(np.clip(base[0] / np.where(flat > 0, flat, 1), -1, 1))
-    around = around + random(z, x, w, y) * np.float32(np.pi) * isotropy
+    around = around + drawn[1] * np.float32(np.pi) * isotropy
     return [np.sin(steep) * np.cos(around), np.sin(steep) * np.sin(around), np.cos(steep)]
 
 

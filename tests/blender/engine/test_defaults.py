@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from splat_addon.blender.engine import final_render
-from splat_addon.blender.properties import is_coarser_than_viewport, viewport_settings
+from splat_addon.blender.properties import viewport_settings
+from splat_addon.blender.render_settings.samples import is_coarser_than_viewport
 from splat_addon.rendering.presets import PRESETS
 
 
