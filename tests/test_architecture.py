@@ -23,6 +23,7 @@ MAY_IMPORT = {
     "quaternions": set(),
     "runs": set(),
     "vectors": set(),
+    "workers": set(),
     "normal_fields": {"quaternions"},
     "surfels": {"clip_lines", "large_surfels", "quaternions"},
     "doubts": {"surfels"},
@@ -34,6 +35,7 @@ MAY_IMPORT = {
     "sampling": {
         "runs",
         "vectors",
+        "workers",
         "array_files",
         "clip_lines",
         "large_surfels",
@@ -47,6 +49,7 @@ MAY_IMPORT = {
     "rendering": {
         "runs",
         "vectors",
+        "workers",
         "array_files",
         "clip_lines",
         "large_surfels",
@@ -113,7 +116,7 @@ MAY_IMPORT = {
 }
 #: `reference` reads rendering's data, never its passes.
 RENDERING_DATA = {"scene", "shadows.maps", "settings", "frame", "view", "depth_range", "methods", "shading_models"}
-RENDERING_DATA |= {"upload.atlas"}
+RENDERING_DATA |= {"upload.atlas", "bounced.light"}
 #: A plan asks the features, whose passes it consists of.
 PLAN_AND_FEATURES = {"plan", "passes", "features", "identity", "read_back"}
 #: The rooms of `rendering` from the bottom up. Imports go down; only within `PLAN_AND_FEATURES` they go sideways.
@@ -121,10 +124,10 @@ RENDERING_FLOORS = (
     {"background", "cryptomatte", "device", "methods", "shading_models"},
     {"frame", "scene"},
     {"settings", "depth_range"},
-    {"presets", "view"},
+    {"presets", "view", "contents"},
     {"shadows", "sample_views"},
     {"assembly"},
-    {"detail", "probes"},
+    {"detail", "probes", "bounced"},
     {"culling", "upload"},
     PLAN_AND_FEATURES,
     {"statistics"},

@@ -16,13 +16,14 @@ from ..surfels import Surfels
 from .assembly.accumulation import around_samples, mean_frame, sample_blocks, sample_camera
 from .assembly.near_and_far import NearAndFar
 from .assembly.panorama_faces import panorama_frame
+from .bounced.kept import Bounced
 from .detail.hierarchies import forget_before
 from .detail.history import history, no_history
 from .detail.streamed import Streamed
 from .device import Device
 from .device.interface import Target, texture_bytes
 from .device.interface import Texture as DeviceTexture
-from .features import mirrors, reflections
+from .features import bounced_light, mirrors, reflections
 from .features.outputs import check_samplers
 from .features.sample_sum import SUM
 from .frame import OUTPUTS, Frame
@@ -79,6 +80,7 @@ class Renderer:
         self.streamed = Streamed()
         self.near_and_far = NearAndFar()
         self.probes = Probes()
+        self.bounced = Bounced()
         self._refining: tuple[Scene, tuple, Shared] | None = None
         self._drawn: WeakSet[Surfels] = WeakSet()
 
@@ -187,12 +189,14 @@ class Renderer:
     ) -> Shared:
         """The plan of a picture and all that its samples share. repeated: how many samples follow one another. options:
         of `plan`."""
-        scene = self.near_and_far.resolved(scene, camera)
+        given, scene = scene, self.near_and_far.resolved(scene, camera)
         before = no_history(scene) if is_repeatable else history(scene, self._drawn)
         frame_plan = plan(scene, camera, settings, history=before, **options)
         check_samplers(frame_plan, self.device.max_samplers)
         seen = self._reflected(scene, camera, settings, frame_plan, is_repeatable)
-        return Shared(scene, frame_plan, settings, repeated, before, *seen)
+        is_bounced = frame_plan.found.get(bounced_light.missing) == ""
+        light = self.bounced.of(given, settings.bounces) if is_bounced and frame_plan.passes else None
+        return Shared(scene, frame_plan, settings, repeated, before, *seen, light)
 
     def _reflected(self, scene: Scene, camera: Camera, settings: Settings, frame_plan: FramePlan, is_repeatable: bool):
         """What the plan's probes and mirror see, drawn if anything in it has changed; None for what it lacks."""
@@ -313,6 +317,7 @@ class Renderer:
         """Free everything on the device."""
         self._refining = None
         self.probes.forget()
+        self.bounced.forget()
         self.resources.release()
 
     def _check(self, settings: Settings) -> None:

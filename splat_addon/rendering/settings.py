@@ -38,6 +38,8 @@ MAX_SHADOW_RESOLUTION = 2048
 
 MAX_LAYERS = 64
 
+MAX_BOUNCES = 16
+
 #: Of the Gaussian that filters a pixel, square pixels; and the most that three columns of a silhouette can have.
 MIN_FILTER_VARIANCE, MAX_FILTER_VARIANCE, MAX_SILHOUETTE_VARIANCE = 0.2, 4.0, 2 / 3
 
@@ -82,6 +84,8 @@ class Settings:
     ambient_occlusion: distance, in scene units, up to which visible surfaces block the world's light from one another;
         0 disables it, and infinity is half the distance to the viewer.
     reflections: glossy objects reflect what stands around them, and not only the world.
+    bounces: how often surfaces reflect light to one another before it counts no more; 0 disables bounced light, and
+        with it emission as light, and what is in the way of the world's.
     layers: maximum number of transparent surfaces behind one another per pixel. blends_rest: the last layer blends all
         remaining surfaces without order, each splat lit by itself; otherwise they are lost.
     alpha_threshold: minimum opacity of the surface that depth and normal are taken from.
@@ -121,6 +125,7 @@ class Settings:
     shadow_resolution: int = 1024
     ambient_occlusion: float = 0.0
     reflections: bool = False
+    bounces: int = 0
     layers: int = 3
     blends_rest: bool = True
     alpha_threshold: float = 0.5
@@ -166,6 +171,8 @@ class Settings:
             raise ValueError(
                 f"ambient_occlusion must be a distance of 0 or more, or infinite, not {self.ambient_occlusion}."
             )
+        if self.bounces not in range(MAX_BOUNCES + 1):
+            raise ValueError(f"bounces must be 0 to {MAX_BOUNCES}, not {self.bounces}.")
         if self.layers not in range(1, MAX_LAYERS + 1):
             raise ValueError(f"layers must be 1 to {MAX_LAYERS}, not {self.layers}.")
         if self.blends_rest and self.layers < 2:

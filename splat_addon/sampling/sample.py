@@ -18,6 +18,7 @@ from ..large_surfels import BLEND_STEPS, LARGE_SIZE, STEPS_OF_LARGE
 from ..normal_fields import NORMAL_FIELDS, turned
 from ..runs import ranges
 from ..surfels import LAYOUT, Surfels, empty_surfels
+from ..workers import in_order
 from .attributes.blend_depths import blend_depths
 from .attributes.lifts import edge_bulges, lifts
 from .attributes.normal_changes import fields_on_triangles
@@ -51,7 +52,6 @@ from .refine.flat_faces import flat_faces
 from .refine.image_samples import inside_triangles
 from .refine.two_sided import cards_of, mostly
 from .table import SampleTable, check_table, empty_column, joined
-from .workers import in_order
 
 #: Times of the steps that need neighbouring samples, relative to one another: clipping, fitting planes, merging.
 _TIMES = 0.3, 0.5, 0.2

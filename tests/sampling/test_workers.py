@@ -8,8 +8,8 @@ from functools import partial
 import numpy as np
 import pytest
 
-from splat_addon.sampling import workers
-from splat_addon.sampling.workers import in_order
+from splat_addon import workers
+from splat_addon.workers import in_order
 from tests.plain import sample_mesh
 
 EVERYTHING = {"crease_angle": np.radians(20), "fits_blending": True, "fits_planes": True}

@@ -10,7 +10,7 @@ from ..plan.graph import Part, Texture
 from ..plan.hosts import LIT_HOSTS, Host, Kind
 from ..plan.planning import any_of
 from ..plan.tiles import tile_edge
-from . import sample_depths
+from . import bounced_light, sample_depths
 
 #: Search distance for occluders in a picture that is drawn in tiles, as a fraction of a tile's edge.
 TILE_SHARE = 1 / 8
@@ -30,6 +30,8 @@ def missing(planning) -> str:
     scene = planning.scene
     if not planning.settings.ambient_occlusion:
         return "its distance is 0"
+    if not planning.find(bounced_light.missing):
+        return "bounced light knows what is in the way of the world's"
     if planning.settings.lights_splats:
         return "splats are lit one by one"
     if not (planning.model.has_world or planning.model.world_light):

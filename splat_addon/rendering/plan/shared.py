@@ -8,6 +8,7 @@ from collections.abc import Callable, Hashable
 from functools import cached_property
 from typing import TypeVar
 
+from ..bounced.light import BouncedLight
 from ..depth_range import ClipRange, clip_range
 from ..detail.history import NOTHING, History
 from ..device.interface import Pipeline, Texture, texture_bytes
@@ -34,7 +35,7 @@ _MOST_BYTES = 1 << 26
 class Shared:
     """A scene, the plan of its picture, and what depends on nothing else. samples: of the picture that are drawn one
     right after the other. history: as of `plan`. probes, mirror: what the plan's probes see, and
-    its mirror, if it has any."""
+    its mirror, if it has any. bounced: the scene's light, if the plan needs it."""
 
     def __init__(
         self,
@@ -45,9 +46,10 @@ class Shared:
         history: History = NOTHING,
         probes: ProbePictures | None = None,
         mirror: MirrorPicture | None = None,
+        bounced: BouncedLight | None = None,
     ):
         self.scene, self.plan, self.settings, self.samples, self.history = scene, plan, settings, samples, history
-        self.probes, self.mirror = probes, mirror
+        self.probes, self.mirror, self.bounced = probes, mirror, bounced
         self._kept: dict[Hashable, object] = {}
         self._tables: dict[tuple[bytes, bytes], Texture] = {}
         self._programs: dict[tuple, tuple[Pass, Pipeline]] = {}

@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import fields, replace
-from weakref import ref
+from dataclasses import replace
 
 import numpy as np
 
 from ..assembly.panorama_faces import panorama_frame
+from ..contents import contents
 from ..frame import Frame
 from ..scene import Scene
 from ..scene.camera import Camera
@@ -38,7 +38,7 @@ class Probes:
     def pictures(self, scene: Scene, probes: tuple[Probe, ...], settings: Settings, draw: Draw) -> ProbePictures:
         """What the probes see: the same object as long as the scene is."""
         plain, size = _plain(settings), (side_of(probes) + 2,) * 2
-        made_from = probes, plain, _contents(scene)
+        made_from = probes, plain, contents(scene)
         if self._kept is None or self._kept[0] != made_from:
             frames = []
             for probe in probes:
@@ -55,7 +55,7 @@ class Probes:
         """What the mirror shows to a camera: the same object as long as both stay."""
         plain, behind = replace(_plain(settings), supersampling=2), mirrored_camera(mirror, camera)
         view = behind.matrix_world.tobytes(), behind.window, behind.size, behind.near, behind.far
-        made_from = mirror, view, behind.is_orthographic, plain, _contents(scene)
+        made_from = mirror, view, behind.is_orthographic, plain, contents(scene)
         if self._mirrored is None or self._mirrored[0] != made_from:
             seen = draw(_seen(scene, mirror.left_out), behind, Viewers(behind, (behind,)), plain)
             self._mirrored = made_from, MirrorPicture(mirror, behind, seen)
@@ -90,28 +90,3 @@ def _seen(scene: Scene, rows: tuple[int, ...]) -> Scene:
         return tuple(replace(one, is_seen=False) if id(one) in left_out else one for one in placed)
 
     return replace(scene, surfels=of(scene.surfels), polygons=of(scene.polygons)) if left_out else scene
-
-
-#: Fields of instances that change nothing in a picture.
-_UNSEEN = {"matrix_world", "light_set", "name", "index", "split_distance", "split_length", "may_change"}
-
-
-def _contents(scene: Scene) -> tuple:
-    """All that the pictures depend on, compared by value, because a final render exports another scene for each frame.
-    Nothing in it keeps surfels, polygons or images in memory."""
-    table = scene.table
-    arrays = table.matrices, table.splits, table.slots, table.kind_of, table.light_sets
-    kinds = [[type(kind.placed), *map(_value, _fields(kind.placed, _UNSEEN))] for kind in table.kinds]
-    around = [_value(value) for value in _fields(scene, {"surfels", "polygons"})]
-    return [array.tobytes() for array in arrays], kinds, around
-
-
-def _fields(owner, but: set[str]) -> list:
-    return [getattr(owner, field.name) for field in fields(owner) if field.name not in but]
-
-
-def _value(value):
-    """What is compared of a value: itself, or which object it is."""
-    if isinstance(value, tuple):
-        return tuple(map(_value, value))
-    return value if value.__hash__ is not object.__hash__ else ref(value)

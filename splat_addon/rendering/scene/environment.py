@@ -92,15 +92,23 @@ class Environment:
         sums, weights = _sums(pixels.reshape(-1, 3), *equirectangular_directions(pixels.shape[:2]))
         return sums / weights, weights
 
-    def _levels_of(self, sun: PictureSun) -> np.ndarray:
-        """(6, 34 * 34, 3) what a sun adds to the levels."""
+    def lighting_pixels(self, sun: PictureSun | None) -> np.ndarray:
+        """(h, w, 3) the image with as few pixels as suffice for matt surfaces. sun: what is left out of it."""
+        return self._blurrable if sun is None else np.maximum(self._blurrable - self._pixels_of(sun), 0)
+
+    def _pixels_of(self, sun: PictureSun) -> np.ndarray:
+        """(h, w, 3) what a sun adds to the reduced image."""
         excess, pixels = excess_of(self.pixels, sun.middle, sun.limit), np.zeros(self._blurrable.shape)
         step = _step(self.pixels, BLURRED_ROWS)
         rows, columns = excess.rows // step, excess.columns // step
         is_whole = np.ix_(rows < len(pixels), columns < pixels.shape[1])
         at = rows[rows < len(pixels), None], columns[columns < pixels.shape[1]]
         np.add.at(pixels, at, excess.radiance[is_whole] / step**2)
-        pixels = _with_pixels_all_around(pixels)
+        return pixels
+
+    def _levels_of(self, sun: PictureSun) -> np.ndarray:
+        """(6, 34 * 34, 3) what a sun adds to the levels."""
+        pixels = _with_pixels_all_around(self._pixels_of(sun))
         directions, share = equirectangular_directions(pixels.shape[:2])
         flat = pixels.reshape(-1, 3)
         own = flat.any(axis=1)

@@ -13,10 +13,10 @@ from functools import partial
 import numpy as np
 
 from ...runs import expand
+from ...workers import run_all
 from ..mesh.connectivity import twins
 from ..mesh.joining import have_same_values
 from ..mesh.triangle_mesh import TriangleMesh, corner_indices, corners_at, doubled_areas, triangle_chunks
-from ..workers import run_all
 from .calm_vertices import calm_vertices
 from .ordering import grouped
 

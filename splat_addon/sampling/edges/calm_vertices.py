@@ -13,8 +13,8 @@ from functools import partial
 
 import numpy as np
 
+from ...workers import run_all
 from ..mesh.triangle_mesh import TriangleMesh, triangle_chunks
-from ..workers import run_all
 
 #: Bits of a vertex's hash that tell whether the triangles around another close a fan: sums of them are exact.
 _FAN_BITS = 24

@@ -14,9 +14,9 @@ from functools import partial
 import numpy as np
 
 from ...clip_lines import CLIP_FIELDS, are_reflex, pack_lines
+from ...workers import in_order
 from ..ldc.grid import Grid
 from ..table import SampleTable
-from ..workers import in_order
 from .borders import Borders
 from .meetings import BEYOND, Images, Meetings, meetings
 from .ordering import order_of

@@ -16,11 +16,11 @@ import numpy as np
 
 from ...clip_lines import CLIP_FIELDS, CUT, are_reflex, unpack_lines
 from ...quaternions import axes_columns
+from ...workers import in_order
 from ..attributes.blend_depths import LEAST_BLENDING
 from ..ldc.grid import Grid
 from ..mesh.triangle_mesh import triangle_chunks
 from ..table import SampleTable
-from ..workers import in_order
 from .image_samples import SAME_SIDE, ImageSamples
 
 #: How far off a sample's plane neighbours may be, in cells.

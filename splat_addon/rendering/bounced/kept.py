@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Keeps the bounced light of a renderer's last scene as long as nothing in it changes."""
+
+from __future__ import annotations
+
+from ..contents import contents
+from ..scene import Scene
+from .light import BouncedLight, bounced_light
+
+#: Fields of scenes and instances that bounced light does not depend on: what is not seen still sends light.
+_NO_MATTER = frozenset({"is_seen", "background", "hides_environment", "light_probes"})
+
+
+class Bounced:
+    """The last scene's bounced light."""
+
+    def __init__(self):
+        self._kept: tuple[tuple, BouncedLight | None] | None = None
+
+    def of(self, scene: Scene, bounces: int) -> BouncedLight:
+        """The same object as long as the scene is."""
+        made_from = bounces, contents(scene, _NO_MATTER)
+        if self._kept is None or self._kept[0] != made_from:
+            self._kept = made_from, bounced_light(scene, bounces)
+        return self._kept[1]
+
+    def forget(self) -> None:
+        self._kept = None

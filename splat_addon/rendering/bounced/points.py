@@ -1,0 +1,244 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Points that are close together on all surfaces of a scene, whatever these consist of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+
+from ...clip_lines import CLIP_FIELDS, are_reflex, kept, unpack_lines
+from ...images import Image
+from ...quaternions import axes_columns
+from ...surfels import Surfels
+from ...vectors import unit
+from ..scene import Scene
+from ..scene.material import SurfaceTexture
+from ..scene.scene import Placed
+
+#: Distance of points on large surfels and triangles; the most of a surfel's radius that one point stands for; both in
+#: cubes.
+_APART, _LARGEST = 0.6, 0.55
+#: Points that are made at once, about.
+_AT_ONCE = 1 << 20
+#: What is less opaque than this lets all light through.
+_OPAQUE = 0.5
+
+
+@dataclass(frozen=True, eq=False)
+class Points:
+    """n places on surfaces. positions: (n, 3) float64 world. normals: (n, 3) float32, unit. albedo, emission: (n, 3)
+    float32. light_sets: (n,) uint8. have_backs: (n,) bool, whether the other side is a surface too."""
+
+    positions: np.ndarray
+    normals: np.ndarray
+    albedo: np.ndarray
+    emission: np.ndarray
+    light_sets: np.ndarray
+    have_backs: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.positions)
+
+    def taken(self, rows: np.ndarray) -> Points:
+        return Points(*(getattr(self, f.name)[rows] for f in fields(self)))
+
+
+def joined(parts: list[Points]) -> Points:
+    """All of them."""
+    return Points(*(np.concatenate([getattr(part, f.name) for part in parts]) for f in fields(Points)))
+
+
+def with_backs(points: Points) -> Points:
+    """The points, and their other sides where these are surfaces."""
+    behind = points.taken(points.have_backs)
+    return joined([points, replace(behind, normals=-behind.normals)])
+
+
+@dataclass(frozen=True, eq=False)
+class _Places:
+    """Points of a shape. positions, normals: (n, 3) float32, object units. rows: (n, k) surfels or corners. weights:
+    (n, k) of these."""
+
+    positions: np.ndarray
+    normals: np.ndarray
+    rows: np.ndarray
+    weights: np.ndarray
+
+    def taken(self, rows) -> _Places:
+        return _Places(self.positions[rows], self.normals[rows], self.rows[rows], self.weights[rows])
+
+
+class Chooser:
+    """Keeps one point of each cube and side: which of some numbers have not been seen before."""
+
+    def __init__(self, count: int):
+        self._seen = np.zeros(count, bool)
+        self._last = np.empty(count, np.int32)
+
+    def fresh(self, numbers: np.ndarray) -> np.ndarray:
+        """Rows of (n,) numbers, one of each that is new."""
+        rows = np.flatnonzero(~self._seen[numbers])
+        own = numbers[rows]
+        order = np.arange(len(rows), dtype=np.int32)
+        self._last[own] = order
+        rows = rows[self._last[own] == order]
+        self._seen[numbers[rows]] = True
+        return rows
+
+
+def points_of(scene: Scene, edge: float, choose) -> Iterator[Points]:
+    """Points of everything in the scene, at most `edge` apart. choose: function of (n, 3) positions and normals that
+    returns the rows to keep, called before what is dear is looked up."""
+    table = scene.table
+    for kind in np.unique(table.kind_of).tolist():
+        rows = np.flatnonzero((table.kind_of == kind) & ~table.are_flattened)
+        if not len(rows):
+            continue
+        placed = table.every_kind[kind]
+        local = edge / float(table.stretches[rows, 0].max())
+        places = _places(placed, local)
+        places = places.taken(_are_opaque(placed, places))
+        if len(rows) > 1:
+            places = _thinned(places, local)
+        step = max(_AT_ONCE // max(len(places.positions), 1), 1)
+        for first in range(0, len(rows), step):
+            some = rows[first : first + step]
+            yield _placed_points(placed, places, table.matrices[some], table.light_sets[some], choose)
+
+
+def _placed_points(placed: Placed, places: _Places, matrices: np.ndarray, light_sets: np.ndarray, choose) -> Points:
+    """The points of instances with these (m, 4, 4) matrices."""
+    linear, count = matrices[:, :3, :3], max(len(places.positions), 1)
+    shift = linear @ np.asarray(placed.shape.origin) + matrices[:, :3, 3]
+    turned = np.linalg.inv(linear) * np.sign(np.linalg.det(linear))[:, None, None]
+    positions = np.matmul(places.positions, linear.swapaxes(1, 2).astype(np.float32)) + shift[:, None]
+    normals = unit(np.matmul(places.normals, turned.astype(np.float32))).reshape(-1, 3)
+    positions = positions.reshape(-1, 3)
+    chosen = choose(positions, normals)
+    own, sets = places.taken(chosen % count), light_sets[chosen // count].astype(np.uint8)
+    albedo, emission = _surfaces(placed, own)
+    have_backs = np.full(len(chosen), not placed.is_closed)
+    if getattr(placed.shape, "hidden_back", None) is not None:
+        have_backs &= placed.shape.hidden_back[own.rows[:, 0]] < 0.5
+    return Points(positions[chosen], normals[chosen], albedo, emission, sets, have_backs)
+
+
+def _places(placed: Placed, edge: float) -> _Places:
+    return _of_surfels(placed.shape, edge) if isinstance(placed.shape, Surfels) else _of_triangles(placed.shape, edge)
+
+
+def _thinned(places: _Places, edge: float) -> _Places:
+    """One point of each small cube and side."""
+    cubes = np.floor(places.positions / (_APART * edge)).astype(np.int64)
+    sides = np.rint(places.normals * 2).astype(np.int64)
+    keys = np.concatenate([cubes, sides], axis=1)
+    return places.taken(np.unique(keys, axis=0, return_index=True)[1])
+
+
+def _of_surfels(surfels: Surfels, edge: float) -> _Places:
+    normals = np.ascontiguousarray(axes_columns(surfels.rotations, 2)[0].T)
+    every, is_large = np.arange(len(surfels)), surfels.radius > _LARGEST * edge
+    small = every[~is_large]
+    parts = [(surfels.positions[small] if len(small) < len(every) else surfels.positions, small)]
+    if is_large.any():
+        parts.append(_spread(surfels, every[is_large], _APART * edge))
+    positions, rows = (np.concatenate(each) if len(parts) > 1 else each[0] for each in zip(*parts, strict=True))
+    return _Places(positions, normals[rows], rows[:, None], np.ones((len(rows), 1), np.float32))
+
+
+def _spread(surfels: Surfels, large: np.ndarray, apart: float) -> tuple[np.ndarray, np.ndarray]:
+    """Positions on large surfels, and the surfel of each."""
+    counts = np.maximum(np.ceil(2 * surfels.scales[large] / apart), 1).astype(np.int64)
+    rows, (i, j) = _grids(counts)
+    at = (np.stack([i, j], axis=1) + 0.5) / counts[rows] * 2 - 1
+    own = large[rows]
+    is_kept = (at**2).sum(axis=1) <= 1
+    packed = [np.asarray(field) for field in (getattr(surfels, name) for name in CLIP_FIELDS) if field is not None]
+    if packed:
+        lines = [unpack_lines(one[own]) for one in packed]
+        lines = np.stack([*lines, *lines][:2], axis=1)
+        reflex = are_reflex(*(one[own] for one in packed)) if len(packed) == 2 else np.zeros(len(own), bool)
+        is_kept &= kept(at, lines, reflex)
+    at, own = at[is_kept].astype(np.float32) * surfels.scales[own[is_kept]], own[is_kept]
+    x, y = (axis.T for axis in axes_columns(surfels.rotations[own], 0, 1))
+    return surfels.positions[own] + x * at[:, :1] + y * at[:, 1:], own
+
+
+def _grids(counts: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray]]:
+    """The places of (n, 2) grids of these sizes one after the other: the number of the grid, and the two indices."""
+    total = counts.prod(axis=1)
+    rows = np.repeat(np.arange(len(counts)), total)
+    number = np.arange(total.sum()) - np.repeat(np.cumsum(total) - total, total)
+    return rows, np.divmod(number, counts[rows, 1])
+
+
+def _of_triangles(polygons, edge: float) -> _Places:
+    corners = polygons.positions.reshape(-1, 3, 3)
+    counts = np.maximum(np.ceil(polygons.longest_edges / (_APART * edge)), 1).astype(np.int64)
+    rows, (i, j) = _grids(np.stack([counts, counts], axis=1))
+    # the centroids of the small triangles that a triangle is divided into
+    is_upper = i + j >= counts[rows]
+    u, v = (i + 1 / 3) / counts[rows], (j + 1 / 3) / counts[rows]
+    u, v = np.where(is_upper, 1 - u, u), np.where(is_upper, 1 - v, v)
+    weights = np.stack([1 - u - v, u, v], axis=1).astype(np.float32)
+    positions = np.einsum("nk,nkc->nc", weights, corners[rows])
+    with np.errstate(invalid="ignore", divide="ignore"):
+        own = unit(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
+    has_area = np.isfinite(own).all(axis=1)[rows]
+    rows, positions, weights = rows[has_area], positions[has_area], weights[has_area]
+    return _Places(positions, own[rows], 3 * rows[:, None] + np.arange(3), weights)
+
+
+def _mean(values: np.ndarray, places: _Places) -> np.ndarray:
+    """(n, c) values of surfels or corners at points."""
+    if places.rows.shape[1] == 1:
+        return values[places.rows[:, 0]]
+    return np.einsum("nk,nkc->nc", places.weights, values[places.rows])
+
+
+def _texture_colors(
+    placed: Placed, places: _Places, materials: np.ndarray
+) -> Iterator[tuple[np.ndarray, np.ndarray, SurfaceTexture]]:
+    """Rows of points that a texture covers, (m, 4) what it shows there, and the texture."""
+    if not placed.is_textured:
+        return
+    uvs = _mean(placed.shape.uvs, places)
+    slots = np.minimum(materials, len(placed.textures) - 1)
+    for slot in np.unique(slots).tolist():
+        if (texture := placed.textures[slot]) is not None:
+            rows = np.flatnonzero(slots == slot)
+            yield rows, _looked_up(texture.image, uvs[rows]), texture
+
+
+def _looked_up(image: Image, uvs: np.ndarray) -> np.ndarray:
+    return image.pyramid.lookup(uvs.T, np.zeros(len(uvs), np.intp))
+
+
+def _are_opaque(placed: Placed, places: _Places) -> np.ndarray:
+    """(n,) bool: points that block light."""
+    opaque = np.ones(len(places.positions), bool)
+    if placed.is_transparent:
+        opaque &= placed.shape.colors[places.rows[:, 0], 3] >= _OPAQUE
+    if getattr(placed, "is_cut_out", False):
+        for rows, colors, texture in _texture_colors(placed, places, placed.shape.materials[places.rows[:, 0]]):
+            if texture.is_cut_out:
+                opaque[rows[colors[:, 3] < _OPAQUE]] = False
+    return opaque
+
+
+def _surfaces(placed: Placed, places: _Places) -> tuple[np.ndarray, np.ndarray]:
+    """(n, 3) albedo and emission of points."""
+    shape = placed.shape
+    materials = np.minimum(shape.materials[places.rows[:, 0]], len(placed.materials) - 1)
+    albedo = _mean(shape.colors, places)[:, :3].copy()
+    for rows, colors, texture in _texture_colors(placed, places, shape.materials[places.rows[:, 0]]):
+        albedo[rows] = colors[:, :3] * np.float32(texture.factor)
+    if shape.emission is not None:
+        emission = _mean(shape.emission, places)
+    else:
+        emission = np.array([material.emission for material in placed.materials], np.float32)[materials]
+    if placed.is_holdout:
+        albedo, emission = np.zeros_like(albedo), np.zeros_like(emission)
+    return np.clip(albedo, 0, 1), np.maximum(emission, 0)

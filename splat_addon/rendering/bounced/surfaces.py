@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The surfaces of a scene for bounced light: the cubes that they fill, and the merged surfels that send and receive.
+
+A merged surfel stands for all points in a cell of several cubes whose normals are nearest to one of six sides.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .points import Points, joined, with_backs
+from .voxels import Voxels, make_voxels
+
+SIDES = 6
+#: Cubes along the side of a cell: as few as keep the merged surfels below their number.
+_CELLS = (3, 4, 6, 8, 12, 16, 24, 32)
+
+
+@dataclass(frozen=True, eq=False)
+class Surfaces:
+    """voxels: what is full. cell: cubes along the side of a cell. points: ordered by merged surfel; those of one begin
+    at `first` (m + 1,). cells: (m, 3) of each merged surfel, and `sides` (m,). starts: (n, 3) where the points' rays
+    begin, relative to `voxels.low`. are_free: (n,) bool, whether that is outside of everything. numbers: (cells, 6)
+    int32 merged surfels of the cells in flat order, -1 for none. present: (cubes,) uint8, a bit for each side that a
+    cube has, so that what is met beside an edge is not taken for what is behind it.
+    """
+
+    voxels: Voxels
+    cell: int
+    points: Points
+    first: np.ndarray
+    cells: np.ndarray
+    sides: np.ndarray
+    starts: np.ndarray
+    are_free: np.ndarray
+    numbers: np.ndarray
+    present: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.cells)
+
+    def mean(self, values: np.ndarray) -> np.ndarray:
+        """(m, c) means of values (n, c) of points."""
+        return np.add.reduceat(values, self.first[:-1], axis=0, dtype=np.float64) / np.diff(self.first)[:, None]
+
+    def hit(self, cubes: np.ndarray, directions: np.ndarray) -> np.ndarray:
+        """(n,) int32 merged surfels that rays meet in these cubes: of the sides that face the ray, the one that faces
+        it most; -1 where none does."""
+        cells = self._flat_cells(np.stack(np.unravel_index(cubes, self.voxels.blocks.shape), axis=1) // self.cell)
+        facing, present = side_of(-directions, None), self.present[cubes]
+        found, best = np.full(len(cubes), -1, np.int32), np.zeros(len(cubes), np.float32)
+        for axis in range(3):
+            side = facing[:, axis]
+            size = np.where(present >> side & 1, np.abs(directions[:, axis]), 0)
+            is_better = size > best
+            found[is_better], best[is_better] = self.numbers[cells, side][is_better], size[is_better]
+        return found
+
+    def _flat_cells(self, cells: np.ndarray) -> np.ndarray:
+        return np.ravel_multi_index(cells.T, cells_of(self.voxels.blocks.shape, self.cell))
+
+    def neighbours(self) -> tuple[np.ndarray, np.ndarray]:
+        """Pairs of merged surfels of one side in cells beside each other: (p,) of each."""
+        shape = np.array(cells_of(self.voxels.blocks.shape, self.cell))
+        pairs = []
+        for number in range(14, 27):
+            step = np.array(np.unravel_index(number, (3, 3, 3))) - 1
+            beside = self.cells + step
+            rows = np.flatnonzero(((beside >= 0) & (beside < shape)).all(axis=1))
+            found = self.numbers[self._flat_cells(beside[rows]), self.sides[rows]]
+            pairs.append(np.stack([rows[found >= 0], found[found >= 0]]))
+        return tuple(np.concatenate(pairs, axis=1))
+
+
+def cells_of(shape: tuple[int, ...], cell: int) -> tuple[int, ...]:
+    """The number of cells along each axis of a grid of cubes."""
+    return tuple(-(-n // cell) for n in shape)
+
+
+def side_of(vectors: np.ndarray, axis=...) -> np.ndarray:
+    """(n,) sides that (n, 3) vectors are nearest to: 2 for each axis, the first towards its positive end. axis None:
+    (n, 3) for each axis the side that the vector points to."""
+    sides = 2 * np.arange(3) + (vectors < 0)
+    if axis is None:
+        return sides
+    largest = np.abs(vectors).argmax(axis=1)
+    return np.take_along_axis(sides, largest[:, None], axis=1)[:, 0]
+
+
+def make_surfaces(
+    low: np.ndarray, edge: float, shape: tuple[int, int, int], points: list[Points], most: int
+) -> Surfaces:
+    """points: at least one of each cube and side that has any. most: merged surfels, about."""
+    fronts = joined(points)
+    every = with_backs(fronts)
+    at = np.floor((every.positions - low) / edge).astype(np.int64)
+    cubes = np.ravel_multi_index(at.T, shape)
+    voxels = make_voxels(low, edge, shape, cubes[: len(fronts)])
+    sides, present = side_of(every.normals), np.zeros(np.prod(shape), np.uint8)
+    for side in range(SIDES):
+        present[cubes[sides == side]] |= np.uint8(1 << side)
+    for cell in _CELLS:
+        keys = np.ravel_multi_index((at // cell).T, cells_of(shape, cell)) * SIDES + sides
+        order = np.argsort(keys, kind="stable")
+        ordered = keys[order]
+        begins = np.flatnonzero(np.concatenate([[True], ordered[1:] != ordered[:-1]]))
+        if len(begins) <= most:
+            break
+    numbers = np.full(np.prod(cells_of(shape, cell)) * SIDES, -1, np.int32)
+    numbers[ordered[begins]] = np.arange(len(begins))
+    every = every.taken(order)
+    starts = every.positions - low + every.normals * (1.01 * edge * np.abs(every.normals).sum(axis=1, keepdims=True))
+    are_free = voxels.blocks.ravel()[voxels.numbers(starts)] > 0
+    first = np.append(begins, len(ordered))
+    own = at[order[begins]] // cell
+    numbers, sides = numbers.reshape(-1, SIDES), sides[order[begins]]
+    return Surfaces(voxels, cell, every, first, own, sides, starts, are_free, numbers, present)

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Merged surfels receive what closed forms say: in a furnace, from a disc, and under an even sky."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from splat_addon.reference import scenes
+from splat_addon.rendering import Light, Material, PolygonInstance, Scene, make_polygons
+from splat_addon.rendering.bounced.gathering import bounced, lit_by_lamps, seen_from
+from splat_addon.rendering.bounced.light import bounced_light, sky_of, surfaces_of
+
+#: Cubes, merged surfels and rays of a coarse and a fine gathering.
+COARSE, FINE = (1 << 15, 500, 1 << 15), (1 << 18, 1000, 1 << 17)
+FACES = [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4),
+         (1, 5, 7), (1, 7, 3)]  # fmt: skip
+
+
+PLAIN = Material()
+
+
+def box(shade, material=PLAIN, half=1.0, **fields):
+    """A box whose faces look into it."""
+    corners = [(x, y, z) for x in (-half, half) for y in (-half, half) for z in (-half, half)]
+    inwards = np.array(FACES)[:, ::-1]
+    return PolygonInstance(make_polygons(corners, inwards, color=(shade,) * 3 + (1,)), materials=(material,), **fields)
+
+
+def disc(radius, height, is_up, material=PLAIN):
+    angles = np.arange(64) * 2 * math.pi / 64
+    places = np.stack([radius * np.cos(angles), radius * np.sin(angles), np.full(64, height)], axis=1)
+    k = np.arange(64)
+    triangles = np.stack([np.full(64, 64), k, (k + 1) % 64], axis=1)[:, :: 1 if is_up else -1]
+    places = np.concatenate([places, [(0, 0, height)]])
+    return PolygonInstance(make_polygons(places, triangles, color=(0.0, 0, 0, 1)), materials=(material,))
+
+
+def gathered(scene, bounces, effort=COARSE):
+    """(m, 3) irradiance over pi, positions and normals of merged surfels, the world's share, and points of each."""
+    voxels, surfels, rays = effort
+    surfaces = surfaces_of(scene, voxels, surfels)
+    seen = seen_from(surfaces, sky_of(scene), rays)
+    light = bounced(surfaces, seen, lit_by_lamps(surfaces, scene.lights), bounces)
+    places, normals = (surfaces.mean(getattr(surfaces.points, name)) for name in ("positions", "normals"))
+    return light, places, normals, seen.open, np.diff(surfaces.first)
+
+
+@pytest.mark.parametrize("shade", (0.3, 0.7))
+def test_furnace_glows_as_the_geometric_series(shade):
+    glow = 0.5
+    light, places, normals, is_open, _ = gathered(Scene(polygons=[box(shade, Material(emission=(glow,) * 3))]), 16)
+    is_inside = (places * normals).sum(axis=1) < 0
+    radiance = glow + shade * light[is_inside]
+    assert np.abs(radiance * (1 - shade) / glow - 1).max() < 0.01
+    assert is_open[is_inside].max() < 0.01  # nothing leaks in
+
+
+def test_disc_receives_the_form_factor_of_another():
+    wide, narrow, apart = 1.0, 0.6, 0.8
+    scene = Scene(polygons=[disc(wide, 0.0, True, Material(emission=(1.0, 2.0, 3.0))), disc(narrow, apart, False)])
+    light, places, normals, _, counts = gathered(scene, 0, FINE)
+    receives = (np.abs(places[:, 2] - apart) < 0.1) & (normals[:, 2] < 0)
+    a, b = wide / apart, narrow / apart
+    s = 1 + (1 + b**2) / a**2
+    factor = 0.5 * (s - math.sqrt(s**2 - 4 * (b / a) ** 2)) * (wide / narrow) ** 2
+    found = np.average(light[receives], axis=0, weights=counts[receives])
+    assert np.abs(found / (np.array((1.0, 2.0, 3.0)) * factor) - 1).max() < 0.08
+
+
+@pytest.mark.parametrize("kind", ("polygons", "surfels"))
+def test_ball_under_an_even_sky_has_all_of_it(kind):
+    shape = scenes.round_polygons(24) if kind == "polygons" else scenes.sphere(4000)[0].surfels[0].surfels
+    light, _, _, is_open, _ = gathered(Scene(**{kind: [replace(shape, is_solid=True)]}, world=(1, 2, 3)), 3)
+    assert (is_open == 1).all()
+    assert np.abs(light - (1, 2, 3)).max() < 1e-9
+
+
+@pytest.mark.parametrize("lamp", (
+    Light("point", energy=40.0, position=(0, 0, 2)), Light("point", energy=40.0, position=(0, 0, 2), size=0.1),
+    Light("sun", energy=2.0), Light("area", energy=20.0, position=(0, 0, 2), half_axes=((0.2, 0, 0), (0, 0.2, 0))),
+    Light("spot", energy=40.0, position=(0, 0, 2), spot_angle=2.0),
+), ids=lambda lamp: f"{lamp.kind} {lamp.size}")  # fmt: skip
+def test_lamp_lights_what_nothing_hides(lamp):
+    scene = Scene(polygons=[disc(1.0, 0.0, True), disc(0.3, 0.4, True)], lights=[replace(lamp, casts_shadow=True)])
+    surfaces = surfaces_of(scene, *FINE[:2])
+    light = lit_by_lamps(surfaces, scene.lights)[:, 0]
+    places, normals = (surfaces.mean(getattr(surfaces.points, name)) for name in ("positions", "normals"))
+    away = np.linalg.norm(places[:, :2], axis=1)
+    is_low, is_up = places[:, 2] < 0.2, normals[:, 2] > 0
+    assert light[is_low & is_up & (away < 0.1)].max() == 0
+    middle = light[~is_low & is_up & (away < 0.1)].mean()
+    strength = {"sun": 2.0, "area": 20 / math.pi / 1.6**2}.get(lamp.kind, 40 / (4 * math.pi) / 1.6**2)
+    assert middle == pytest.approx(strength / math.pi, rel=0.12)
+    assert light[is_low & ~is_up & (away < 0.8)].max() == 0
+
+
+def test_scene_of_nothing_has_no_bounced_light():
+    assert bounced_light(Scene(), 3) is None
