@@ -10,16 +10,17 @@ of scans has one file, which hands out such columns in portions (`clouds`). `poi
 
 from .clouds import ReadingCancelled
 from .columns import FLOAT_COLORS
-from .contents import SUFFIXES, read_contents
+from .contents import SUFFIXES, point_pieces, read_contents
 from .following import followed
 from .gaussian_ply import write_gaussian_ply
 from .gaussians import DEFAULT_FLATNESS, Gaussians, flat_gaussians, harmonic_colors
 from .offsets import middle_of, needs_offset, offset_for
+from .pieces import PointPieces
 from .placement import joined, transformed
 from .points import ATTRIBUTES, Points
 from .scanner_paths import scanner_path
 from .series import file_numbered, numbered_files
-from .surfel_ply import PlyPortions, StoredSurfels, read_ply, write_ply
+from .surfel_ply import PlyPortions, StoredSurfels, is_surfel_ply, read_ply, write_ply
 
 __all__ = [
     "ATTRIBUTES",
@@ -28,6 +29,7 @@ __all__ = [
     "SUFFIXES",
     "Gaussians",
     "PlyPortions",
+    "PointPieces",
     "Points",
     "ReadingCancelled",
     "StoredSurfels",
@@ -35,11 +37,13 @@ __all__ = [
     "flat_gaussians",
     "followed",
     "harmonic_colors",
+    "is_surfel_ply",
     "joined",
     "middle_of",
     "needs_offset",
     "numbered_files",
     "offset_for",
+    "point_pieces",
     "read_contents",
     "read_ply",
     "scanner_path",

@@ -52,17 +52,24 @@ class Cloud:
 
 def read_all(cloud: Cloud, progress: Progress | None = None) -> Columns:
     """All points of a cloud. Raises `ReadingCancelled`, and ValueError with a sentence."""
-    tables, counts = [], []
+    tables, count = [], 0
     for share, table in cloud.portions:
         tables.append(table)
-        counts.append(len(next(iter(table.values()), ())))
-        if progress is not None and not progress(sum(counts), share):
+        count += len(next(iter(table.values()), ()))
+        if progress is not None and not progress(count, share):
             raise ReadingCancelled
+    return Columns(joined(tables))
+
+
+def joined(tables: list[Table]) -> Table:
+    """The tables one after another, from which their columns are taken. Those that lack a column have no colour, or 0,
+    there."""
+    counts = [len(next(iter(table.values()), ())) for table in tables]
     names = dict.fromkeys(name for table in tables for name in table)
-    return Columns({name: _joined(tables, counts, name) for name in names or POSITION})
+    return {name: _column(tables, counts, name) for name in names or POSITION}
 
 
-def _joined(tables: list[Table], counts: list[int], name: str) -> np.ndarray:
+def _column(tables: list[Table], counts: list[int], name: str) -> np.ndarray:
     """A column of all tables, which is taken from them; those that lack it have no number there."""
     missing = np.nan if name in COLOR else 0
     parts = [table.pop(name, None) for table in tables]

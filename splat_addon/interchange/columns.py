@@ -111,13 +111,30 @@ def display_color(columns: dict[str, np.ndarray], floats: str = "DISPLAY") -> tu
     scale = [*channels, *(alpha for alpha in alphas if alpha.dtype.kind != "f")]
     values = [
         column.astype(np.float64)
-        if floats == "LINEAR" and column.dtype.kind == "f"
+        if _is_linear(column, floats)
         else srgb_to_linear(_not_negative(column) / _white(column, scale))
         for column in channels
     ]
     alpha = fractions(alphas[0], channels) if alphas else np.ones(len(values[0]))
     with np.errstate(over="ignore"):
         return np.column_stack([*values, alpha]).astype(np.float32), _assumed(channels, scale, floats)
+
+
+def with_white_1(columns: dict[str, np.ndarray], sample: dict[str, np.ndarray], floats: str) -> dict[str, np.ndarray]:
+    """The columns with colours and opacities as floats whose white is 1, by what stands for it in `sample`, columns of
+    the same names that have the largest values. floats: as in `display_color`, which then finds them as meant."""
+    names = next((group for group in _CHANNELS if has(sample, group)), ())
+    channels = [sample[name] for name in names]
+    alphas = [name for name in _ALPHAS if name in sample][:1]
+    scale = [*channels, *(sample[name] for name in alphas if sample[name].dtype.kind != "f")]
+    whites = {name: _white(sample[name], scale) for name in names if not _is_linear(sample[name], floats)}
+    for name in alphas:
+        whites[name] = _white(sample[name], [sample[name], *(each for each in channels if each.dtype.kind != "f")])
+    return columns | {n: _not_negative(columns[n]) / white for n, white in whites.items() if n in columns}
+
+
+def _is_linear(column: np.ndarray, floats: str) -> bool:
+    return floats == "LINEAR" and column.dtype.kind == "f"
 
 
 def alpha_of(columns: dict[str, np.ndarray]) -> np.ndarray | None:

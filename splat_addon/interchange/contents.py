@@ -5,12 +5,15 @@ from __future__ import annotations
 
 import os
 from dataclasses import replace
+from functools import partial
+from types import ModuleType
 
 from . import e57, las, pcd, ptx, spz, xyz
 from .clouds import COLOR, Cloud, Progress, read_all
 from .columns import FLOAT_COLORS, Columns, has
 from .gaussians import DEFAULT_FLATNESS, Gaussians
-from .ply_contents import coarse_steps, read_ply_contents
+from .pieces import PointPieces
+from .ply_contents import coarse_steps, opened_points, read_ply_contents
 from .ply_header import is_ply, other_kind
 from .points import Points, points
 from .surfel_ply import StoredSurfels
@@ -41,17 +44,43 @@ def read_contents(
     Raises ValueError with one sentence for a file that has none of the formats, is damaged or has no positions; OSError
     if it cannot be read; `ReadingCancelled` if `progress` returns False.
     """
-    if float_colors not in FLOAT_COLORS:
-        raise ValueError(f"float_colors must be one of {', '.join(FLOAT_COLORS)}, not {float_colors!r}.")
-    with open(path, "rb") as stream:
-        head = stream.read(HEAD)
+    _check_float_colors(float_colors)
+    head = _head(path)
     if is_ply(head):
         return read_ply_contents(path, flatness, float_colors)
     if spz.is_this(head):
         return spz.read_spz(path, flatness)
+    return _points(_reader(head).opened(path), float_colors, progress)
+
+
+def point_pieces(
+    path: str | os.PathLike, float_colors: str = FLOAT_COLORS[0], progress: Progress | None = None
+) -> PointPieces | None:
+    """The bare points of a file of any size, a portion at a time; None if it holds Gaussians or surfels. The arguments
+    and errors are those of `read_contents`."""
+    _check_float_colors(float_colors)
+    head = _head(path)
+    if spz.is_this(head) or (is_ply(head) and opened_points(path) is None):
+        return None
+    opened = opened_points if is_ply(head) else _reader(head).opened
+    return PointPieces(partial(opened, path), float_colors, progress)
+
+
+def _check_float_colors(float_colors: str) -> None:
+    if float_colors not in FLOAT_COLORS:
+        raise ValueError(f"float_colors must be one of {', '.join(FLOAT_COLORS)}, not {float_colors!r}.")
+
+
+def _head(path: str | os.PathLike) -> bytes:
+    with open(path, "rb") as stream:
+        return stream.read(HEAD)
+
+
+def _reader(head: bytes) -> ModuleType:
+    """The reader of a scan that begins so. Raises ValueError with a sentence."""
     for reader in _SCANS.values():
         if reader.is_this(head):
-            return _points(reader.opened(path), float_colors, progress)
+            return reader
     known = ", ".join(["PLY", "SPZ", *_SCANS])
     raise ValueError(f"This is no file of points that can be read, which are {known}.{other_kind(head)}")
 

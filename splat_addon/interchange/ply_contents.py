@@ -4,16 +4,18 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 
+from .clouds import PORTION, Cloud, Table
 from .columns import POSITION, Columns
 from .gaussian_forms import with_usual_names
 from .gaussian_ply import gaussians, is_gaussians
 from .gaussians import VIEW_DEPENDENT, Gaussians
 from .packed_gaussians import CHUNK, HARMONICS, is_packed, unpacked
-from .ply_file import read_element, read_vertices
+from .ply_file import read_element, read_vertices, vertex_count, vertex_portions
 from .points import Points, points
 from .surfel_ply import StoredSurfels, is_surfels, stored_surfels
 
@@ -41,6 +43,22 @@ def read_ply_contents(
         contents = points(columns, float_colors)
     said = (*contents.said, *said, *coarse_steps(columns), *columns.passed_over(), *_left_out(others))
     return replace(contents, said=said)
+
+
+def opened_points(path: str | os.PathLike) -> Cloud | None:
+    """The bare points of a PLY file; None if it holds surfels or Gaussians. Raises as `read_vertices`."""
+    first, _, others = next(vertex_portions(path, 1))
+    names = Columns(with_usual_names(first))
+    if is_packed(first) or is_gaussians(names) or is_surfels(names):
+        return None
+    return Cloud(_point_portions(path), said=_left_out(others))
+
+
+def _point_portions(path: str | os.PathLike) -> Iterator[tuple[float, Table]]:
+    total, done = max(vertex_count(path), 1), 0
+    for columns, _, _ in vertex_portions(path, PORTION):
+        done += len(next(iter(columns.values())))
+        yield done / total, with_usual_names(columns)
 
 
 def coarse_steps(columns: dict[str, np.ndarray]) -> list[str]:

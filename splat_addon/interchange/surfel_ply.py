@@ -42,6 +42,10 @@ from .columns import (
 )
 from .placement import joined, parts_of, world_positions
 from .ply_file import read_vertices, vertex_count, vertex_portions, write_vertices
+from .ply_header import is_ply
+
+#: Bytes at the beginning of a file that tell whether it is PLY.
+_FIRST = 4096
 
 _ORIGIN, _SOLID = "origin", "solid"
 _SCALE = ("scale_0", "scale_1")
@@ -150,6 +154,14 @@ class PlyPortions:
             self._said |= dict.fromkeys(part.said)
             self._clear, self._count = self._clear + clear_count(part.surfels), self._count + len(part.surfels)
             yield part.surfels
+
+
+def is_surfel_ply(path: str | os.PathLike) -> bool:
+    """Whether a file has this layout. Raises ValueError with a sentence for a damaged PLY file, OSError."""
+    with open(path, "rb") as stream:
+        if not is_ply(stream.read(_FIRST)):
+            return False
+    return is_surfels(next(vertex_portions(path, 1)).columns)
 
 
 def is_surfels(columns: dict[str, np.ndarray]) -> bool:

@@ -11,18 +11,21 @@ read, are replaced by their parents. `checking` reads a whole file and compares 
 from .block_file import BlockFile
 from .checking import check, described
 from .own_files import id_of, own_file
+from .point_files import PointFiles
 from .stream import Stream, Unreadable
-from .writing import PORTION, WritingCancelled, write_blocks
+from .writing import PORTION, WritingCancelled, new_file, write_blocks
 
 __all__ = [
     "PORTION",
     "BlockFile",
+    "PointFiles",
     "Stream",
     "Unreadable",
     "WritingCancelled",
     "check",
     "described",
     "id_of",
+    "new_file",
     "own_file",
     "write_blocks",
 ]

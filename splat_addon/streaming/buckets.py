@@ -32,7 +32,6 @@ class Survey:
     kind: np.dtype
     origin: np.ndarray
     is_solid: bool
-    is_transparent: bool
     low: np.ndarray
     high: np.ndarray
     cuts: np.ndarray
@@ -45,7 +44,7 @@ def surveyed(parts: Iterable[Surfels], portion: int, told: Callable[[int], None]
     """
     if iter(parts) is parts:
         raise ValueError("The parts are read twice: pass a list of surfels, or an object that can be iterated again.")
-    count, names, origin, is_solid, is_transparent, sample = 0, set(), None, True, False, []
+    count, names, origin, is_solid, sample = 0, set(), None, True, []
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     for part in parts:
         if not len(part):
@@ -56,7 +55,6 @@ def surveyed(parts: Iterable[Surfels], portion: int, told: Callable[[int], None]
         sample.append(positions[-count % _EVERY :: _EVERY].copy())
         names |= part.arrays().keys()
         is_solid &= part.is_solid
-        is_transparent |= part.is_transparent
         count += len(part)
         told(count)
     if not count:
@@ -64,7 +62,7 @@ def surveyed(parts: Iterable[Surfels], portion: int, told: Callable[[int], None]
     codes = np.sort(morton_codes(np.concatenate(sample), low, high))
     runs = -(-count // portion)
     cuts = np.unique(codes[len(codes) * np.arange(1, runs) // runs])
-    return Survey(count, row_type(names), origin, is_solid, is_transparent, low, high, cuts)
+    return Survey(count, row_type(names), origin, is_solid, low, high, cuts)
 
 
 def filled(parts: Iterable[Surfels], survey: Survey, folder: Path, told: Callable[[int], None]) -> list[Path]:

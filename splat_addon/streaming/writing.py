@@ -4,14 +4,15 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 from typing import BinaryIO
 
 import numpy as np
 
-from ..hierarchy import build_hierarchy
+from ..hierarchy import Hierarchy, build_hierarchy
 from ..hierarchy.blocks import Blocks
 from ..runs import ranges
 from ..surfels import Surfels
@@ -57,35 +58,66 @@ def write_blocks(
 
     survey = surveyed(parts, portion, told(0.0, 0.1, "Counting"))
     total = survey.count
-    with unfinished(path, partial(_check, survey.count)) as folder:
-        scratch = folder / "scratch"
-        scratch.mkdir()
-        files = filled(parts, survey, scratch, told(0.1, 0.3, "Sorting"))
-        with open(folder / Path(path).name, "wb") as stream:
-            _write(stream, survey, portions_of(files, survey, portion), scratch, told(0.3, 1.0, "Merging"))
-    return survey.count
+    with new_file(path) as file:
+        files = filled(parts, survey, file.scratch, told(0.1, 0.3, "Sorting"))
+        merged = _merged(portions_of(files, survey, portion), survey, told(0.3, 1.0, "Merging"))
+        return file.write(merged, survey.kind, survey.origin, survey.is_solid)
 
 
-def _check(count: int, file: Path) -> None:
-    """Raise OSError or ValueError if a written file is damaged, or does not hold `count` surfels."""
-    if (found := check(file)) != count:
-        raise ValueError(f"It has {found:,} of {count:,} surfels.")
-
-
-def _write(stream: BinaryIO, survey: Survey, portions: Iterable[np.ndarray], folder: Path, told) -> None:
-    begin(stream)
-    tables, sums, done, written = _Tables(folder), PageSums(), 0, 0
-    start = align(stream)
-    sums.begin(survey.kind.itemsize)
+def _merged(portions: Iterable[np.ndarray], survey: Survey, told) -> Iterator[tuple[Surfels, Hierarchy]]:
+    done = 0
     for rows in portions:
         surfels = as_surfels(rows, survey.origin, survey.is_solid)
-        hierarchy = build_hierarchy(surfels, partial(_tell, told, done, len(surfels)))
-        rows = joined_rows(surfels, hierarchy.nodes, survey.kind)[hierarchy.entries]
+        yield surfels, build_hierarchy(surfels, partial(_tell, told, done, len(surfels)))
+        done += len(surfels)
+        told(done)
+
+
+class NewFile:
+    """A file that is being written. scratch: a folder on the same disk, which goes away."""
+
+    def __init__(self, path: Path):
+        self._path, self.scratch, self._count = path, path.parent / "scratch", 0
+        self.scratch.mkdir()
+
+    def write(
+        self, portions: Iterable[tuple[Surfels, Hierarchy]], kind: np.dtype, origin: np.ndarray, is_solid: bool
+    ) -> int:
+        """Write portions of neighbours with their hierarchies; returns how many surfels there are. All have this (3,)
+        origin; kind: the type of a row. Raises ValueError if there are none."""
+        with open(self._path, "wb") as stream:
+            self._count = _write(stream, portions, kind, origin, is_solid, self.scratch)
+        return self._count
+
+    def check(self, file: Path) -> None:
+        """Raise OSError or ValueError if what was written is damaged, or does not hold all surfels."""
+        if (found := check(file)) != self._count:
+            raise ValueError(f"It has {found:,} of {self._count:,} surfels.")
+
+
+@contextmanager
+def new_file(path: str | os.PathLike) -> Iterator[NewFile]:
+    """A file that appears under its name when the context ends. Raises as `whole_files.unfinished`."""
+    made: list[NewFile] = []
+    with unfinished(path, lambda file: made[0].check(file)) as folder:
+        made.append(NewFile(folder / Path(path).name))
+        yield made[0]
+
+
+def _write(stream: BinaryIO, portions, kind: np.dtype, origin: np.ndarray, is_solid: bool, folder: Path) -> int:
+    begin(stream)
+    tables, sums, done, written, is_transparent = _Tables(folder), PageSums(), 0, 0, False
+    start = align(stream)
+    sums.begin(kind.itemsize)
+    for surfels, hierarchy in portions:
+        rows = joined_rows(surfels, hierarchy.nodes, kind)[hierarchy.entries]
         _add(stream, sums, rows)
         tables.add(hierarchy.blocks, rows, written)
         written += len(rows)
         done += len(surfels)
-        told(done)
+        is_transparent |= surfels.is_transparent
+    if not done:
+        raise ValueError("There are no surfels to store.")
     # the roots' rows once more, side by side, so that whoever opens the file reads them at once
     roots = np.concatenate(tables.root_rows)
     _add(stream, sums, roots)
@@ -95,15 +127,16 @@ def _write(stream: BinaryIO, survey: Survey, portions: Iterable[np.ndarray], fol
         stream,
         {
             "id": os.urandom(16).hex(),
-            "surfels": survey.count,
-            "origin": survey.origin.tolist(),
-            "is_solid": survey.is_solid,
-            "is_transparent": survey.is_transparent,
+            "surfels": done,
+            "origin": origin.tolist(),
+            "is_solid": is_solid,
+            "is_transparent": is_transparent,
             "roots": tables.roots,
-            "fields": {name: FIELDS[name][0] for name in survey.kind.names},
+            "fields": {name: FIELDS[name][0] for name in kind.names},
             "arrays": arrays,
         },
     )
+    return done
 
 
 def _add(stream: BinaryIO, sums: PageSums, rows: np.ndarray) -> None:

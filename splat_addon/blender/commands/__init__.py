@@ -29,7 +29,7 @@ _COMMANDS = {
 }
 
 #: command -> its argument that stands in for the opened .blend
-_INSTEAD = {"points": "files", "store": "ply", "info": "file", "template": "file"}
+_INSTEAD = {"points": "files", "store": "file", "info": "file", "template": "file"}
 
 
 def run(arguments: list[str]) -> int:

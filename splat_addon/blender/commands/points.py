@@ -38,6 +38,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     source.add_argument("files", nargs="*", default=[], metavar="FILE", help="scans, Gaussian splats or surfels")
     source.add_argument("--objects", nargs="+", help="names; without them and files, all visible points")
     parser.add_argument(
+        "--series", action="store_true", help="show the numbered files beside FILE at the frames of their numbers"
+    )
+    parser.add_argument(
+        "--plain", action="store_true", help="leave render settings, colours and the camera of files as they are"
+    )
+    add_points_arguments(parser)
+    parser.add_argument("--again", action="store_true", help="convert even where the file is there already")
+
+
+def add_points_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the settings of points, and what the file says or shows of colours."""
+    for name in PointsProperties.__annotations__:
+        setting = SurfelPointsSettings.bl_rna.properties[name]
+        parser.add_argument(f"--{name.replace('_', '-')}", **_KINDS[setting.type](setting), help=setting.description)
+    parser.add_argument(
         "--float-colors",
         type=str.upper,
         choices=FLOAT_COLORS,
@@ -50,16 +65,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         choices=[name for name, *_ in COLOR_ITEMS if name != "ATTRIBUTE"],
         help="what the colours of files show, if not their own",
     )
-    parser.add_argument(
-        "--series", action="store_true", help="show the numbered files beside FILE at the frames of their numbers"
-    )
-    parser.add_argument(
-        "--plain", action="store_true", help="leave render settings, colours and the camera of files as they are"
-    )
-    for name in PointsProperties.__annotations__:
-        setting = SurfelPointsSettings.bl_rna.properties[name]
-        parser.add_argument(f"--{name.replace('_', '-')}", **_KINDS[setting.type](setting), help=setting.description)
-    parser.add_argument("--again", action="store_true", help="convert even where the file is there already")
 
 
 def run(options: argparse.Namespace) -> Iterator[Path]:

@@ -8,23 +8,28 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import bpy
+import numpy as np
 
 from ...claims import claimed
 from ...doubts import doubts_of_rounding
-from ...interchange import PlyPortions
 from ...streaming import PORTION, described, write_blocks
 from ...streaming.layout import SUFFIX
 from ...surfels import Surfels, portions
+from ..conversion.file_storing import FileStoring
+from ..conversion.points_settings import viewpoint
 from ..geometry.sources import is_surfel_object
 from ..geometry.surfel_files import file_of
 from ..geometry.world_surfels import world_surfels
+from ..operators.file_paths import file_sentence
 from .convert import add_density_arguments, batch_of, refuse, sources_of
 from .out_paths import file_at, made_room
+from .points import add_points_arguments
 
 HELP = "store surfels in a file that views stream"
 DESCRIPTION = (
-    "Stores surfels, in world coordinates, in a file from which views read only what they need: those of a PLY file, "
-    "or of objects, which are converted first if they are no surfels. File > Import > Surfels opens it."
+    "Stores surfels, in world coordinates, in a file from which views read only what they need: those of objects, "
+    "which are converted first if they are no surfels, or those of a file. The points of a scan become surfels without "
+    "being in memory at once. File > Import > Surfels opens it."
 )
 
 
@@ -32,24 +37,38 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", required=True, help=f"the new file, NAME{SUFFIX}, or its FOLDER/")
     source = parser.add_mutually_exclusive_group(required=True)
     source.add_argument("--objects", nargs="+", help="names of surfel objects, or of objects to convert")
-    source.add_argument("--ply", type=Path, help="a PLY file of surfels, of any size")
+    source.add_argument("--file", "--ply", type=Path, help="surfels, Gaussian splats or a scan, of any size")
     add_density_arguments(parser)
+    add_points_arguments(parser)
     parser.add_argument("--again", action="store_true", help="store even where the file is there already")
 
 
 def run(options: argparse.Namespace) -> Iterator[Path]:
     """Store, and yield the written file. Raises ValueError or OSError; then there is no file."""
-    out = file_at(options.out, SUFFIX, options.ply.stem if options.ply else "")
+    out = file_at(options.out, SUFFIX, options.file.stem if options.file else "")
     with claimed(made_room(out)):
         if not options.again and _is_there(out):
             print(f"there already: {out}", flush=True)
             return
-        parts = PlyPortions(options.ply) if options.ply else _of_objects(options)
-        expected = len(parts) if options.ply else sum(map(len, parts))
-        count = write_blocks(out, parts, _printed(), expected=expected)
-        for note in (f"{count:,} surfels", *(parts.notes() if options.ply else ())):
+        if options.file:
+            count, notes = _store_file(options, out)
+        else:
+            parts = _of_objects(options)
+            count, notes = write_blocks(out, parts, _printed(), expected=sum(map(len, parts))), []
+        for note in (f"{count:,} surfels", *notes):
             print(note, flush=True)
         yield out
+
+
+def _store_file(options: argparse.Namespace, out: Path) -> tuple[int, list[str]]:
+    eye = viewpoint(options, bpy.context.scene)
+    storing = FileStoring(
+        options.file, options, options.float_colors, options.color_by or "COLOR", None if eye is None else np.array(eye)
+    )
+    try:
+        return storing.write(out, _printed()), storing.notes
+    except OSError as error:
+        raise ValueError(f"{options.file.name}: {file_sentence(error)}") from error
 
 
 def _is_there(out: Path) -> bool:
@@ -78,14 +97,15 @@ def _of_objects(options: argparse.Namespace) -> Sequence[Surfels]:
     return [part for each in surfels for part in portions(each, PORTION)]
 
 
-def _printed() -> Callable[[float, str], None]:
+def _printed() -> Callable[[float, str], bool]:
     """A progress that prints each tenth of the way."""
     said = -1
 
-    def told(share: float, step: str) -> None:
+    def told(share: float, step: str) -> bool:
         nonlocal said
         if int(10 * share) > said:
             said = int(10 * share)
             print(f"{step}: {share:.0%}", flush=True)
+        return True
 
     return told

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from contextlib import suppress
 from pathlib import Path
 
@@ -12,21 +13,23 @@ from bpy.props import BoolProperty, EnumProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper, poll_file_object_drop
 from mathutils import Matrix
 
-from ...interchange import SUFFIXES, PlyPortions
+from ...interchange import SUFFIXES
 from ...streaming import id_of
 from ...streaming.layout import MAGIC, SUFFIX
 from ..conversion.file_import import FileImport
+from ..conversion.file_storing import FileStoring
 from ..conversion.placement import placed
 from ..conversion.points_settings import (
     PointsProperties,
     draw_gaussian_properties,
     draw_points_properties,
     is_mild,
+    viewpoint,
 )
 from ..conversion.series import begin_series, first_shown
 from ..conversion.surfel_objects import active_collection, add_object_of, select_only
 from ..geometry.attributes import offset_of, read_surfels, set_offset
-from ..geometry.scene_offset import taken_from
+from ..geometry.scene_offset import keep_offset, scene_offset, taken_from
 from ..geometry.surfel_files import keep_coarsest, relative_path
 from ..ids import IMPORT_FILE
 from ..spoken import said
@@ -53,7 +56,7 @@ tell"""
         name="Keep in a File",
         description=(
             "Store the surfels in a file beside the .blend, from which every view reads only what it needs, instead "
-            "of in the .blend. For more surfels than memory holds; not for Gaussian splats and bare points"
+            "of in the .blend. For more surfels or points than memory holds"
         ),
         default=False,
     )
@@ -144,7 +147,8 @@ tell"""
             return FileImport(path, self, context.scene, self.float_colors)
         # repeated from the redo panel, it replaces the file whose object was undone
         own = getattr(self, "_kept", "")
-        return Keeping(absolute(self.filepath), absolute(f"//{Path(self._name).stem}{SUFFIX}"), own)
+        kept = absolute(f"//{Path(self._name).stem}{SUFFIX}")
+        return Keeping(path, kept, self, context.scene, self.float_colors, own)
 
     def _finish(self, context, work):
         if isinstance(work, FileImport):
@@ -164,6 +168,8 @@ tell"""
             self._finish_keeping(context, work)
 
     def _finish_keeping(self, context, keeping):
+        if keeping.offset is not None and (note := keep_offset(context.scene, keeping.offset)):
+            self._tell([note])
         count = self._open(context, keeping.path, is_own=True)
         self._kept = id_of(keeping.path)
         self.report({"INFO"}, said("{count:,} surfels -> {path}", count=count, path=keeping.path))
@@ -207,15 +213,28 @@ tell"""
 
 
 class Keeping(Writing):
-    """The surfels of a PLY file on their way to a file of blocks. Raises OSError, and ValueError if it is no PLY."""
+    """A file on its way to a file of blocks. offset: as of `FileStoring`."""
 
-    def __init__(self, source: str, path: str, own: str = ""):
-        parts = PlyPortions(source)
-        super().__init__(path, parts, len(parts), own)
+    def __init__(
+        self, source: str, path: str, properties: PointsProperties, scene: bpy.types.Scene, float_colors: str, own=""
+    ):
+        """The arguments are those of `FileImport` and `Writing`. Raises OSError if the file cannot be read."""
+        os.stat(source)
+        super().__init__(path, (), 0, own)
+        eye = viewpoint(properties, scene)
+        eye = None if eye is None else np.array(eye)
+        self._storing = FileStoring(source, properties, float_colors, "COLOR", eye, scene_offset(scene))
+
+    @property
+    def offset(self) -> np.ndarray | None:
+        return self._storing.offset
+
+    def _write(self, progress):
+        self._storing.write(self.path, progress)
 
     def notes(self) -> list[str]:
         """A sentence about each thing that was left out, assumed or found doubtful."""
-        return self._parts.notes()
+        return self._storing.notes
 
 
 def draw_menu_entry(menu, context):

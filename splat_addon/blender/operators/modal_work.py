@@ -52,7 +52,10 @@ class Writing:
             return not self.is_cancelled
 
         with own_file(self.path, self._own) as self.path:
-            write_blocks(self.path, self._parts, progress, expected=self._expected)
+            self._write(progress)
+
+    def _write(self, progress: Callable[[float, str], bool]) -> None:
+        write_blocks(self.path, self._parts, progress, expected=self._expected)
 
     def status(self) -> str:
         return said("Storing surfels: {percent:.0f}%   Esc cancels", percent=100 * self.share)

@@ -1061,11 +1061,10 @@ GERMAN = {
     "Keep in a File": "In einer Datei behalten",
     (
         "Store the surfels in a file beside the .blend, from which every view reads only what it needs, instead of in "
-        "the .blend. For more surfels than memory holds; not for Gaussian splats and bare points"
+        "the .blend. For more surfels or points than memory holds"
     ): (
         "Die Surfels in einer Datei neben der .blend-Datei speichern, aus der jede Ansicht nur liest, was sie braucht, "
-        "statt in der .blend-Datei. Für mehr Surfels, als der Speicher fasst; nicht für Gaussian Splats und bloße "
-        "Punkte"
+        "statt in der .blend-Datei. Für mehr Surfels oder Punkte, als der Speicher fasst"
     ),
     "Converting to surfels: {percent:.0f}%   Esc cancels": "Umwandlung in Surfels: {percent:.0f}%   Esc bricht ab",
     "Counting …": "Wird gezählt …",

@@ -62,6 +62,21 @@ def test_a_ply_file_is_stored_and_told_of_without_a_blend(animation, surfels_com
     stream.close()
 
 
+def test_a_scan_is_stored_without_a_blend_in_the_colors_that_are_chosen(surfels_command, tmp_path):
+    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(20.0), np.arange(20.0)))
+    np.savetxt(tmp_path / "scan.xyz", np.stack([x, y, x / 10], axis=1), fmt="%.3f")
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    out = tmp_path / "scan.surfelblocks"
+    options = "--color-by", "height", "--neighbours", 8
+    code, said = surfels_command("store", "--file", tmp_path / "scan.xyz", "--out", out, *options)
+    assert code == 0 and "400 surfels" in said and "normals to face up" in said
+    found = every_surfel(out)
+    height = found.positions[:, 2]
+    assert (found.normals[:, 2] > 0.9).all() and len(np.unique(np.round(found.colors, 3), axis=0)) > 10
+    low, high = found.colors[height.argmin(), :3], found.colors[height.argmax(), :3]
+    assert low.sum() < high.sum()
+
+
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
@@ -69,7 +84,7 @@ def test_a_ply_file_is_stored_and_told_of_without_a_blend(animation, surfels_com
         (("--objects", "camera"), "'camera' has no surface to convert"),
         (("--objects", "floor", "--spacing", 1e-9), "floor: "),
         (("--ply", "nowhere.ply"), "nowhere.ply: No such file"),
-        (("--ply", "bare.ply"), "does not hold surfels"),
+        (("--file", "bare.ply"), "1 usable points are too few"),
     ],
 )
 def test_what_cannot_be_stored_leaves_nothing(arguments, sentence, animation, surfels_command, tmp_path, monkeypatch):

@@ -11,6 +11,7 @@ import pytest
 from splat_addon.blender.export.streams import Streams
 from splat_addon.blender.geometry import surfel_files
 from splat_addon.blender.geometry.attributes import write_surfels
+from splat_addon.blender.geometry.scene_offset import scene_offset
 from splat_addon.blender.operators import import_file, modal_work
 from splat_addon.blender.operators.store_surfels import Storing
 from splat_addon.interchange import write_ply
@@ -218,10 +219,17 @@ def window(monkeypatch):
     )
 
 
+def new_keeping(folder, own=""):
+    """scan.ply in a folder, on its way to a file of blocks."""
+    source, path = (str(folder / f"scan.{end}") for end in ("ply", "surfelblocks"))
+    scene = bpy.context.scene
+    return import_file.Keeping(source, path, scene.surfel_points_conversion, scene, "DISPLAY", own)
+
+
 @pytest.mark.parametrize("is_pressed", [False, True])
 def test_esc_cancels_keeping_a_file(is_pressed, opaque, saved, window):
     write_ply(saved / "scan.ply", opaque(3000))
-    keeping, may_go = import_file.Keeping(str(saved / "scan.ply"), str(saved / "scan.surfelblocks")), Event()
+    keeping, may_go = new_keeping(saved), Event()
     run = keeping.run
     keeping.run = lambda: (may_go.wait(10), run(lambda share: None))
     operator = Operator(keeping)
@@ -245,7 +253,7 @@ def test_ctrl_c_in_the_background_leaves_nothing(opaque, saved, monkeypatch):
 
     monkeypatch.setattr("splat_addon.streaming.writing.build_hierarchy", press)
     with pytest.raises(KeyboardInterrupt):
-        Operator(import_file.Keeping(str(saved / "scan.ply"), str(saved / "scan.surfelblocks"))).run_now(bpy.context)
+        Operator(new_keeping(saved)).run_now(bpy.context)
     assert sorted(path.name for path in saved.iterdir()) == ["scan.ply", "scene.blend"]
     assert not bpy.data.meshes
 
@@ -271,18 +279,26 @@ def test_a_second_ply_file_of_the_same_name_is_kept_in_another_file(opaque, save
 def test_a_repeated_import_replaces_the_file_of_the_undone_one(opaque, saved):
     path = str(saved / "scan.surfelblocks")
     write_ply(saved / "scan.ply", opaque(100))
-    import_file.Keeping(str(saved / "scan.ply"), path).run()
-    import_file.Keeping(str(saved / "scan.ply"), path, id_of(path)).run()
+    new_keeping(saved).run()
+    new_keeping(saved, id_of(path)).run()
     assert counts(saved) == {"scan.surfelblocks": 100}
 
 
-def test_points_cannot_be_kept_in_a_file(saved):
-    (saved / "bare.ply").write_text(
-        "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
-        "0 0 0\n"
-    )
-    with pytest.raises(RuntimeError, match="does not hold surfels"):
-        bpy.ops.import_scene.surfels_ply(filepath=str(saved / "bare.ply"), keeps_in_file=True)
+def test_a_scan_goes_to_a_file_and_gives_the_scene_its_offset(saved):
+    corner = np.array([4e5, 5.6e6, 0.0])
+    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(30.0), np.arange(30.0)))
+    np.savetxt(saved / "scan.xyz", np.stack([x, y, np.sin(x / 9)], axis=1) + corner, fmt="%.4f")
+    bpy.ops.import_scene.surfels_ply(filepath=str(saved / "scan.xyz"), keeps_in_file=True)
+    made, file = bpy.context.object, BlockFile(saved / "scan.surfelblocks")
+    assert made.data.surfel_splatting.file == "//scan.surfelblocks" and file.count == 900
+    assert np.abs(scene_offset(bpy.context.scene) - corner).max() < 100
+    assert np.abs(scene_offset(bpy.context.scene) + made.location - file.origin).max() < 1e-4
+
+
+def test_too_few_points_leave_no_file(saved):
+    (saved / "bare.xyz").write_text("0 0 0\n1 0 0\n")
+    with pytest.raises(RuntimeError, match="2 usable points are too few"):
+        bpy.ops.import_scene.surfels_ply(filepath=str(saved / "bare.xyz"), keeps_in_file=True)
     assert not bpy.data.meshes and len(list(saved.iterdir())) == 2
 
 
