@@ -22,6 +22,7 @@ ALLOWED = {
     "scripts/bench/fuzz/scan_formats.py": {"write_bytes": "scratch in a temporary folder"},
     "scripts/bench/fuzz_scenes/__init__.py": {"open": "what workers print, while they do"},
     "scripts/bench/fuzz_scenes/worker.py": {"fdopen": "a pipe"},
+    "scripts/bench/leaves.py": {"save": "to the stream of `whole_file`"},
     "scripts/bench/reflecting.py": {"save": "to the stream of `whole_file`"},
     "scripts/bench/streaming.py": {"unlink": "its own file, after the last measurement"},
     "scripts/build.py": {

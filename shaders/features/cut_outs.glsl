@@ -1,8 +1,14 @@
 // References: Wyman, McGuire, "Hashed Alpha Testing", 2017 (alpha as the probability of being kept, so that leaves keep
-//             their area at any distance); Roberts, "The unreasonable effectiveness of quasirandom sequences", 2018 (the
-//             thresholds); lib/screen_door.glsl in shadow maps.
+//             their area at any distance); lib/own_threshold.glsl.
 // Summary: polygons with holes where their texture is transparent. A sample is kept if the alpha under it exceeds a
-//          threshold that differs from sample to sample, and from frame to frame of those that are averaged.
+//          threshold that differs from triangle to triangle, from sample to sample, and from frame to frame of those
+//          that are averaged.
+
+#part corner
+#include "lib/own_threshold.glsl"
+void cut_outs_tell(int corner, float slot, vec3 eye) {
+  cut_surface = surface_number(corner / 3, int(instance.normal_matrix[3].x));
+}
 
 #part polygon_visibility.vert
 #include "lib/uv_gradient.glsl"
@@ -18,24 +24,25 @@ void cut_outs_moved(int corner, float slot, vec3 eye, vec3 first, vec3 outward, 
 }
 
 #part fragment
+#include "lib/own_threshold.glsl"
 #include "lib/texture_lookup.glsl"
 #include "lib/uv_change.glsl"
 
 const float SAMPLE_VARIANCE = 1.0 / 12.0;  // of a sample's square, in samples
 const float ROUNDING_OF_ALPHA = 1e-3;      // between passes
-const vec2 SPREAD = vec2(0.7548776662, 0.5698402910);
 
 float alpha_at(SurfaceTexture t, vec2 uv, mat2 change) {
   return texture_alpha(t, uv, uv_variances(SAMPLE_VARIANCE, change));
 }
 
-// Between 2 ROUNDING_OF_ALPHA and 1. The cameras of frames that are averaged differ by parts of a sample, by which the
-// thresholds of each sample are spread evenly. The factors are whole, so that it does not matter which corner is nearest;
-// at one sample a pixel, cameras differ by multiples of SPREAD, and numbers by those of 2.62, about the golden ratio.
-float cut_threshold(vec2 texel) {
-  vec2 corner = view.window.xy / view.window.zw, whole = floor(corner + 0.5);
-  float number = dot(whole + texel, SPREAD) + dot(corner - whole, vec2(8.0, -6.0));
-  return mix(2.0 * ROUNDING_OF_ALPHA, 1.0, fract(number));
+// Between 2 ROUNDING_OF_ALPHA and 1. texel: of the picture or map.
+float cut_threshold(ivec2 texel, float turned) {
+  return mix(2.0 * ROUNDING_OF_ALPHA, 1.0, own_threshold(cut_surface, texel, turned));
+}
+
+// Of a sample of the picture.
+float cut_threshold_at(ivec2 sample_at) {
+  return cut_threshold(sample_at + ivec2(frame.cut_corner), frame.cut_turned);
 }
 
 #part visibility.frag
@@ -48,16 +55,15 @@ float visible_alpha(SurfaceTexture t) {
 void cut_outs_keep() {
   if (texture_slot < 0.0) return;
   SurfaceTexture t = surface_texture(int(texture_slot));
-  vec2 texel = vec2(floor(gl_FragCoord.x), floor(gl_FragCoord.y / float(ROWS)));
-  if (t.is_cut_out && !(visible_alpha(t) > cut_threshold(texel))) discard;
+  ivec2 sample_at = ivec2(gl_FragCoord.xy) / ivec2(1, ROWS);
+  if (t.is_cut_out && !(visible_alpha(t) > cut_threshold_at(sample_at))) discard;
 }
 
 #part visibility.frag, shadow
-#include "lib/screen_door.glsl"
 void cut_outs_keep() {
   if (texture_slot < 0.0) return;
   SurfaceTexture t = surface_texture(int(texture_slot));
-  if (t.is_cut_out && !is_kept(visible_alpha(t), int(instance.first_slot), ivec2(gl_FragCoord.xy))) discard;
+  if (t.is_cut_out && !(visible_alpha(t) > cut_threshold(ivec2(gl_FragCoord.xy), 0.0))) discard;
 }
 
 #part polygons.frag
@@ -65,6 +71,6 @@ void cut_outs_keep() {
 void cut_outs_keep() {
   if (texture_slot < 0.0) return;
   SurfaceTexture t = surface_texture(int(texture_slot));
-  float least = cut_threshold(floor(gl_FragCoord.xy)) - ROUNDING_OF_ALPHA;
+  float least = cut_threshold_at(ivec2(gl_FragCoord.xy)) - ROUNDING_OF_ALPHA;
   if (t.is_cut_out && !(alpha_at(t, texture_uv, sample_uv_change()) > least)) discard;
 }

@@ -65,16 +65,17 @@ def whole_hits(instance: PolygonInstance, corners, origin, direction, near: floa
     """The hits of `nearest_hits` without those in holes: a ray passes a texture if its own threshold exceeds the alpha
     there.
 
-    Thresholds are multiples of the golden ratio, and so spread evenly over neighbouring rays.
+    Thresholds of the first surface that a ray meets are multiples of the golden ratio, and so spread evenly over
+    neighbouring rays; those of surfaces behind it are multiples of others, so that what passes several is the product.
     """
     depth, triangle, shares = nearest_hits(corners, origin, direction, near, far)
-    threshold, rays = (np.arange(len(depth)) * 0.6180339887498949) % 1, np.flatnonzero(np.isfinite(depth))
+    ratio, random, rays = 0.6180339887498949, np.random.default_rng(0), np.flatnonzero(np.isfinite(depth))
     while instance.is_cut_out and len(rays):
-        rays = rays[_alphas(instance, triangle[rays], shares[rays]) <= threshold[rays]]
+        rays = rays[_alphas(instance, triangle[rays], shares[rays]) <= rays * ratio % 1]
         beyond = depth[rays] * (1 + 1e-9)
         found = nearest_hits(corners, origin[rays], direction[rays], beyond, far)
         depth[rays], triangle[rays], shares[rays] = found
-        rays = rays[np.isfinite(found[0])]
+        rays, ratio = rays[np.isfinite(found[0])], random.random()
     return depth, triangle, shares
 
 

@@ -78,6 +78,29 @@ def test_the_mean_of_samples_is_what_blending_gives(method, camera, render):
     assert 0.3 < (blended[is_card][:, 1] - 0.1).mean() / 0.7 < 0.7
 
 
+@pytest.mark.parametrize("is_one", [True, False])
+def test_cards_behind_one_another_let_through_the_product(is_one, render):
+    """The cards are of one object or of many, seen with one sample a pixel or 16, and in the exact picture."""
+    camera, alpha, count = Camera.perspective(look_at((0, 0, 60), (0, 0, 0)), 0.02, (32, 32)), 0.4, 4
+    one = card(np.full((8, 8), alpha), tilt=0.0)
+    places = np.concatenate([CORNERS - (0, 0, k / 10) for k in range(count)])
+    faces = np.concatenate([HALVES + 4 * k for k in range(count)])
+    stacked = make_polygons(places, faces, uvs=np.tile((CORNERS[:, :2] / 2 + 0.5)[HALVES.ravel()], (count, 1)))
+    lower = np.diag((1.0, 1, 1, 1)), np.diag((9.0, 9, 1, 1))
+    lower[0][2, 3], lower[1][2, 3] = -0.1, -2
+    cards = [replace(one, matrix_world=one.matrix_world + k * (lower[0] - np.eye(4))) for k in range(count)]
+    of_cards = (replace(one, shape=stacked),) if is_one else tuple(cards)
+    scene = Scene(polygons=(*of_cards, replace(floor(), matrix_world=lower[1])))
+    expected = (1 - alpha) ** count
+    for samples, spread in ((1, 0.4), (16, 0.1)):
+        red = render(scene, camera, Settings(method="quad", shading="flat", samples=samples)).color[..., 0]
+        through = (red - GREEN[0]) / (RED[0] - GREEN[0])
+        assert through.mean() == pytest.approx(expected, abs=0.02) and through.std() < spread
+    if is_one:
+        red = render_exact(scene, camera, Settings(shading="flat"), samples=4).color[..., 0]
+        assert (red.mean() - GREEN[0]) / (RED[0] - GREEN[0]) == pytest.approx(expected, abs=0.02)
+
+
 @pytest.mark.parametrize("method", METHODS)
 def test_every_sample_shows_the_card_or_what_is_behind(method, render):
     """Where splats are near, the visibility pass moves polygons back. Their holes must stay where they are."""

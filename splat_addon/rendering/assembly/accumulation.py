@@ -80,7 +80,8 @@ def sample_camera(camera: Camera, number: int, samples: int) -> Camera:
     """
     # a camera that is one of a picture's samples already stays one
     variance = camera.sample_variance + (_BOX_VARIANCE if samples > 1 else 0.0)
-    moved = _moved(camera, *pixel_offset(number, samples)).with_values(sample=number, sample_variance=variance)
+    own = {"sample": camera.sample + number, "sample_variance": variance}
+    moved = _moved(camera, *pixel_offset(number, samples)).with_values(**own)
     return _through(moved, camera.lens.points(sample_points(1, number)[0, 2:])) if camera.lens else moved
 
 

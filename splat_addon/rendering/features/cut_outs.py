@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Polygons with holes where their texture is transparent, such as cards of leaves (Wyman & McGuire 2017).
 
-Passes keep each sample with the probability that its alpha is, so the mean of samples is what blending gives, without
-layers.
+Passes keep each sample with the probability that its alpha is, by thresholds of each triangle, so the mean of samples
+is what blending gives, without layers, also of many behind one another.
 """
 
 from __future__ import annotations
+
+import math
 
 from ..passes.textures import rows_of
 from ..plan.graph import Part
@@ -13,7 +15,25 @@ from ..plan.hosts import Host, Kind
 from ..plan.planning import count, counted
 from .textures import ATLAS, OF_TRIANGLES
 
-_VARYINGS = (("smooth", "vec3", "cut_place"), ("smooth", "vec3", "cut_eye"), *OF_TRIANGLES)
+_SURFACE = (("flat", "float", "cut_surface"),)
+_VARYINGS = (("smooth", "vec3", "cut_place"), ("smooth", "vec3", "cut_eye"), *OF_TRIANGLES, *_SURFACE)
+
+#: Where numbers of samples in the picture are taken from 0 again.
+_PERIOD = 1 << 16
+
+
+def _corner(tile) -> tuple[int, int]:
+    """The number, in the picture that all its tiles and samples are of, of a tile's first sample."""
+    left, bottom, across, up = tile.window
+    return tuple(math.floor(start / step + 0.5) % _PERIOD for start, step in ((left, across), (bottom, up)))
+
+
+def _turned(tile) -> int:
+    """The last 16 bits of the sample's number, from last to first."""
+    return int(f"{tile.camera.sample % _PERIOD:016b}"[::-1], 2)
+
+
+VALUES = {"cut_corner": ("vec2", _corner), "cut_turned": ("float", _turned)}
 
 
 def _count(planning) -> int:
@@ -36,4 +56,4 @@ def parts(planning, p):
         inputs = "polygon_uvs", *ATLAS
         yield Part("cut_outs", words, inputs=inputs, varyings=_VARYINGS, constants=rows, only="cut_out")
     if p.host == Host.POLYGONS:
-        yield Part("cut_outs", only="cut_out")
+        yield Part("cut_outs", varyings=_SURFACE, only="cut_out")

@@ -54,9 +54,10 @@ DRAW: Block = (
     ),
 )
 
-#: Of one instance. light_set: 1 in the channel of the instance's set. orientation: -1 for a mirrored object. overlap:
-#: of polygons, how far behind them splats may lie, in view units. first_slot, more_slots: number of its first material
-#: slot, and of those after it. split_distance: as of `Items`.
+#: Of one instance. normal_matrix: its last column begins with the object's number in the scene. light_set: 1 in the
+#: channel of the instance's set. orientation: -1 for a mirrored object. overlap: of polygons, how far behind them
+#: splats may lie, in view units. first_slot, more_slots: number of its first material slot, and of those after it.
+#: split_distance: as of `Items`.
 INSTANCE: Block = (
     "Instance",
     "instance",
@@ -89,6 +90,7 @@ def instance_values(items: Items) -> np.ndarray:
     model_views[:, :3] *= items.scale
     normal_matrices = np.zeros((count, 4, 4))
     normal_matrices[:, :3, :3], normal_matrices[:, 3, 3] = from_eye.normal_matrices, 1
+    normal_matrices[:, 0, 3] = items.table.numbers
     values = np.zeros((count, 4 * TEXELS_PER_INSTANCE), np.float32)
     values[:, :16] = model_views.transpose(0, 2, 1).reshape(count, 16)
     values[:, 16:32] = normal_matrices.transpose(0, 2, 1).reshape(count, 16)
