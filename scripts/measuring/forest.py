@@ -98,7 +98,7 @@ def looking(scene: bpy.types.Scene, eye, target, lens: float) -> None:
 
 
 def stack(size, pixels: int) -> tuple[bpy.types.Scene, list[bpy.types.Object]]:
-    """Black cards, each turned by itself, before a plane that glows red; and the cards. Their image covers half of each.
+    """Black cards, each turned by itself, before a plane that glows red, and the cards. Half of each is clear.
 
     pixels: their edge in the picture.
     """

@@ -40,7 +40,7 @@ float cut_threshold(ivec2 texel, float turned) {
   return mix(2.0 * ROUNDING_OF_ALPHA, 1.0, own_threshold(cut_surface, texel, turned));
 }
 
-// Of a sample of the picture.
+// The threshold of a sample of the picture.
 float cut_threshold_at(ivec2 sample_at) {
   return cut_threshold(sample_at + ivec2(frame.cut_corner), frame.cut_turned);
 }
