@@ -9,7 +9,7 @@ from functools import cached_property
 
 import numpy as np
 
-from . import colors, curves, images, mixing, numbers, procedural, spectra, vectors
+from . import colors, curves, images, mixing, numbers, procedural, skies, spectra, vectors
 
 #: Samples evaluated together: few enough for temporaries to stay in the processor's cache.
 BLOCK = 1 << 13
@@ -21,6 +21,7 @@ FUNCTIONS = {
     **mixing.FUNCTIONS,
     **numbers.FUNCTIONS,
     **procedural.FUNCTIONS,
+    **skies.FUNCTIONS,
     **spectra.FUNCTIONS,
     **vectors.FUNCTIONS,
 }

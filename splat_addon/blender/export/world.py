@@ -18,7 +18,7 @@ from ...rendering.scene.numbers import MAX_RADIANCE
 from ...rendering.scene.sun_apart import sun_apart
 from ..materials.fingerprints import told_of_nodes
 from ..materials.graphs.channels import constant_of
-from ..materials.graphs.worlds import radiance, read_radiance
+from ..materials.graphs.worlds import Sampling, radiance, read_radiance
 from ..materials.node_trees import uses_nodes
 from ..materials.surface_shaders import Part, Shader
 from ..materials.texture_images import UnreadableError, fingerprint, linear_pixels, odd_pixels_sentence, settings_of
@@ -181,15 +181,16 @@ class _Evaluated:
         notes.add = lambda sentence: notes.said.setdefault(sentence)
         for share, shader in zip(self.shares, self.shaders, strict=True):
             try:
-                graph, rows = read_radiance(shader)
+                graph, sampling = read_radiance(shader)
                 for reason, used in graph.doubts.items():
                     notes.add(f"{self.owner} has {reason}; {used}")
-                read.append((share, graph.graph, rows))
+                read.append((share, graph.graph, sampling))
             except UnreadableError:
                 found = found + share * np.array(color_times_strength(shader, self.owner, notes))
-        rows = max(rows for _, _, rows in read)
+        rows = max(sampling.rows for _, _, sampling in read)
+        suns = [sun for _, _, sampling in read for sun in sampling.suns]
         for share, graph, _ in read:
-            found = found + share * radiance(graph, rows)
+            found = found + share * radiance(graph, Sampling(rows, suns))
         return Environment(np.clip(found, 0, MAX_RADIANCE).astype(np.float32)), tuple(notes.said)
 
 

@@ -7,7 +7,11 @@ import bpy
 import numpy as np
 import pytest
 
+from splat_addon.blender.export.notes import Notes
+from splat_addon.blender.export.world import WorldStore
+from splat_addon.blender.working_space import to_xyz
 from splat_addon.reference.metrics import psnr
+from splat_addon.shading_nodes.skies import Air, once_scattered
 
 
 @pytest.fixture
@@ -74,7 +78,50 @@ def stretched_picture_and_a_colour(world):
     tree.links.new(total.outputs[0], output.inputs["Surface"])
 
 
-WORLDS = pattern_of_any_strength, coloured_mirror_ball, stretched_picture_and_a_colour
+def sky_node(world, kind, **properties):
+    """A Sky Texture node. kind: as Blender 5 names it; in 4.5 some are absent."""
+    node = add(world, "TexSky")
+    known = [item.identifier for item in node.bl_rna.properties["sky_type"].enum_items]
+    node.sky_type = kind if kind in known else "NISHITA" if "SCATTERING" in kind else pytest.skip(f"no {kind} here")
+    for name, value in properties.items():
+        setattr(node, name, value)
+    return node
+
+
+def sky_of_light_scattered_once(world):
+    at = {"altitude": 800, "air_density": 1.5, "ozone_density": 2}
+    link(world, sky_node(world, "SINGLE_SCATTERING", sun_disc=False, sun_elevation=2.6, sun_rotation=0.9, **at))
+
+
+def turned_and_tinted_sky_of_light_scattered_often(world):
+    made = sky_node(world, "MULTIPLE_SCATTERING", sun_disc=False, sun_elevation=0.2, sun_rotation=2.0)
+    place, mapping, mix = (add(world, kind) for kind in ("TexCoord", "Mapping", "MixRGB"))
+    mapping.inputs["Rotation"].default_value, mix.inputs[0].default_value = (0.5, 0.3, 1.0), 0.3
+    world.node_tree.links.new(place.outputs["Generated"], mapping.inputs[0])
+    world.node_tree.links.new(mapping.outputs[0], made.inputs[0])
+    world.node_tree.links.new(made.outputs[0], mix.inputs[1])
+    link(world, mix)
+
+
+def sun_of_a_sky(world):
+    """Wide, so that pixels show its shape."""
+    made = sky_node(world, "SINGLE_SCATTERING", sun_size=0.3, sun_intensity=0.5, sun_elevation=0.4, sun_rotation=-0.6)
+    link(world, made)
+
+
+def sky_of_preetham(world):
+    link(world, sky_node(world, "PREETHAM", turbidity=4.0, sun_direction=(0.3, -0.5, 0.4)))
+
+
+WORLDS = (
+    pattern_of_any_strength,
+    coloured_mirror_ball,
+    stretched_picture_and_a_colour,
+    sky_of_light_scattered_once,
+    turned_and_tinted_sky_of_light_scattered_often,
+    sun_of_a_sky,
+    sky_of_preetham,
+)
 
 
 @pytest.mark.parametrize("make", WORLDS, ids=lambda make: make.__name__)
@@ -86,3 +133,26 @@ def test_a_world_of_nodes_is_that_of_cycles(make, world, picture, switch_to_cycl
     truth = picture()[..., :3]
     assert np.ptp(truth) > 0.1
     assert psnr(ours / truth.max(), truth / truth.max()) > 35
+
+
+def test_a_sky_of_hosek_and_wilkie_is_named_and_about_as_bright(world, picture, switch_to_cycles, said):
+    link(world, sky_node(world, "HOSEK_WILKIE", ground_albedo=0.3, turbidity=3.0, sun_direction=(0.3, -0.5, 0.4)))
+    ours = picture()[..., :3]
+    words = said()
+    assert "Hosek / Wilkie" in words and "Preetham's sky is used" in words
+    switch_to_cycles()
+    assert 1 / 3 < ours.mean() / picture()[..., :3].mean() < 3
+
+
+def test_the_sun_of_a_sky_lights_as_its_irradiance_says(world):
+    node = sky_node(world, "SINGLE_SCATTERING", sun_elevation=1.2, sun_rotation=0.4)
+    link(world, node)
+    environment = WorldStore().read(world, Notes())["environment"]
+    sun = environment.sun_above(10.0)
+    air = Air(False, 1.2, node.altitude, 1.0, 1.0, 1.0)
+    # A disc that is darker to its rim has 0.8 of an even one's light; the sky around it adds a little.
+    expected = 0.8 * np.linalg.inv(to_xyz()) @ once_scattered.sunlight(air, 1.2)
+    np.testing.assert_allclose(sun.irradiance, expected, rtol=0.04)
+    assert sun.angle < 2 * node.sun_size
+    toward = np.cos(1.2) * np.sin(0.4), np.cos(1.2) * np.cos(0.4), np.sin(1.2)
+    np.testing.assert_allclose(sun.toward, toward, atol=0.01)

@@ -12,7 +12,7 @@ from ..socket_ranges import range_of
 from ..surface_shaders import SHADERS, Shader
 from ..texture_images import UnreadableError
 from ..transparent_mixes import TransparentMix
-from . import converters, seen_straight_on, sources, textures, vector_readers  # noqa: F401 they register what nodes become
+from . import converters, seen_straight_on, skies, sources, textures, vector_readers  # noqa: F401 they register what nodes become
 from .reading import GraphReading, Value
 from .vector_readers import as_direction, inverse_of
 

@@ -3,11 +3,13 @@
 
 from __future__ import annotations
 
+import math
 from types import SimpleNamespace
+from typing import NamedTuple
 
 import numpy as np
 
-from ....rendering.scene.equirectangular import equirectangular_directions
+from ....rendering.scene.equirectangular import directions_at, equirectangular_directions, pixels_around
 from ....sampling import Image
 from ....shading_nodes import Graph, Inputs, evaluate
 from ..mesh_layers import GENERATED, POSITION, MeshLayers
@@ -20,9 +22,26 @@ from .sources import coordinates, derived
 
 #: Rows of the picture: of patterns, and the most of one that has images.
 _ROWS, _MOST_ROWS = 256, 1024
+#: Pixels across the disc of a sun.
+_PIXELS_ACROSS = 3
 
 #: A world has no place of its own.
 _NOWHERE = SimpleNamespace(matrix_world=np.eye(4), data=None)
+
+
+class _Sun(NamedTuple):
+    """A disc in the direction (3,), radians across, where the picture needs so many times the rows of a pattern."""
+
+    toward: np.ndarray
+    size: float
+    times: int
+
+
+class Sampling(NamedTuple):
+    """At how many rows the nodes of a world are evaluated, and the suns around which they are evaluated finer."""
+
+    rows: int
+    suns: list[_Sun]
 
 
 class _Directions:
@@ -33,8 +52,15 @@ class _Directions:
 
     def __init__(self):
         self.kept_images: dict = {}
-        self.rows = _ROWS
+        self.rows, self.suns = _ROWS, []
         self.image = MeshLayers(None, _images=self.kept_images).image
+
+    def show_sun(self, toward: tuple[float, float, float], size: float) -> float:
+        """Make the picture fine enough for a disc so many radians across; the angle across its pixels there."""
+        wanted = min(_PIXELS_ACROSS * math.pi / size, _MOST_ROWS)
+        times = max(1, round(wanted / _ROWS))
+        self.suns.append(_Sun(np.array(toward), size, times))
+        return math.pi / (times * _ROWS)
 
     def derived(self, name: str) -> int:
         return 0 if name in (GENERATED, POSITION) else 1
@@ -46,25 +72,55 @@ class _Directions:
         raise UnreadableError(f"the attribute {name!r}, which a world does not have")
 
 
-def read_radiance(shader: Shader) -> tuple[ReadGraph, int]:
-    """What a Background or Emission node sends out, and the rows that its picture needs. Raises UnreadableError if
+def read_radiance(shader: Shader) -> tuple[ReadGraph, Sampling]:
+    """What a Background or Emission node sends out, and what its picture needs. Raises UnreadableError if
     nothing of it can be read."""
     layers = _Directions()
     reading = GraphReading(layers, shader.groups)
     color, strength = (reading.read_strictly(shader.node.inputs[name]) for name in ("Color", "Strength"))
     sent = reading.color("multiplied", reading.three(color, True), strength)
     doubts = {what: how for what, how in reading.doubts.items() if how != STRAIGHT_ON}
-    return ReadGraph(*reading.graph(sent), doubts), layers.rows
+    return ReadGraph(*reading.graph(sent), doubts), Sampling(layers.rows, layers.suns)
 
 
-def radiance(graph: Graph, rows: int) -> np.ndarray:
+def radiance(graph: Graph, sampling: Sampling) -> np.ndarray:
     """(rows, 2 rows, 3) float32 in all directions, as `Environment` has them."""
-    shape = rows, 2 * rows
-    directions = equirectangular_directions(shape)[0].T.astype(np.float32)
+    shape = sampling.rows, 2 * sampling.rows
+    found = _sent(graph, equirectangular_directions(shape)[0]).reshape(*shape, 3)
+    times = max((sun.times for sun in sampling.suns), default=1)
+    wanted = max(sampling.rows, times * _ROWS)
+    if wanted > sampling.rows:
+        found = _finer(found, wanted // sampling.rows)
+    for sun in sampling.suns:
+        # where the coarse picture may have met the disc
+        reach = sun.size + 2 * math.pi / sampling.rows
+        rows, columns = pixels_around(sun.toward, reach, found.shape[:2])
+        directions, _ = directions_at(rows, columns, found.shape[:2])
+        found[rows[:, None], columns] = _sent(graph, directions.reshape(-1, 3)).reshape(directions.shape)
+    return found
+
+
+def _sent(graph: Graph, directions: np.ndarray) -> np.ndarray:
+    """(n, 3) float32 in directions (n, 3)."""
+    directions = directions.T.astype(np.float32)
     ones = np.ones_like(directions[:1])
     layers = np.concatenate([directions, ones, -directions, ones])
-    found = evaluate(graph, Inputs(rows * 2 * rows, colors=layers))
-    return np.ascontiguousarray(np.broadcast_to(found, (3, rows * 2 * rows)).T).reshape(*shape, 3)
+    found = evaluate(graph, Inputs(directions.shape[1], colors=layers))
+    return np.ascontiguousarray(np.broadcast_to(found, directions.shape).T)
+
+
+def _finer(pixels: np.ndarray, times: int) -> np.ndarray:
+    """A picture of all directions with so many times the rows and columns, interpolated."""
+    for axis in (0, 1):
+        size = pixels.shape[axis]
+        place = (np.arange(size * times) + 0.5) / times - 0.5
+        low = np.floor(place).astype(int)
+        share = np.expand_dims((place - low).astype(np.float32), (1 - axis, 2))
+        # columns go round, rows end at the poles
+        ends = [np.clip(at, 0, size - 1) if axis == 0 else at % size for at in (low, low + 1)]
+        first, second = (np.take(pixels, at, axis) for at in ends)
+        pixels = first + (second - first) * share
+    return pixels
 
 
 @reads("TexEnvironment")
