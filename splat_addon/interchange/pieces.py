@@ -49,7 +49,9 @@ class PointPieces:
         self._tell_white(largest)
         self.sample = replace(points(self._columns, float_colors), places=cloud.places)
         said = (*self.sample.said, *cloud.said, *coarse_steps(self._columns), *self._columns.passed_over())
-        self.said = said
+        # what is said of the sample is so of all
+        kept = f"{len(self.sample.positions):,} points"
+        self.said = tuple(each.replace(kept, f"{self.count:,} points") for each in said)
 
     def _tell_white(self, largest: dict[str, float]) -> None:
         """Let the sample have the largest number of each colour."""

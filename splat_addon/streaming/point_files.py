@@ -158,7 +158,7 @@ class _Near:
         return bool(((other.low <= self._high) & (other.high >= self._low)).all())
 
     def of(self, rows: np.ndarray) -> np.ndarray:
-        """Those of some rows that are near."""
+        """Which of some rows are near."""
         positions = rows[POSITIONS]
         inside = np.flatnonzero(self._is_inside(positions))
         return rows[inside[self._taken[tuple(self._cells(positions[inside]).T)]]]

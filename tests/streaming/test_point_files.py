@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from splat_addon.sampling import surfels_from_points
-from splat_addon.streaming import PointFiles
+from splat_addon.streaming.point_files import PointFiles
 
 
 @pytest.fixture(scope="module")

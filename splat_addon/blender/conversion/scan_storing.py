@@ -1,31 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Converts more points than memory holds straight to a file of blocks.
-
-They are sorted into files of neighbours (`streaming.PointFiles`); each of these becomes surfels together with the
-points around it, and then a part of the hierarchy, in a few threads.
-"""
+"""Converts more points than memory holds straight to a file of blocks, as `streaming.write_points` hands them out."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
-from functools import partial
 
 import numpy as np
 
-from ...clip_lines import CLIP_FIELDS
-from ...hierarchy import Hierarchy, build_hierarchy
 from ...interchange import PointPieces, Points
 from ...interchange.scan_colors import GREYS, RAMP, of_classes, on_ramp
-from ...sampling import SamplingCancelled, surfels_from_points
-from ...streaming import PointFiles, WritingCancelled, new_file
-from ...streaming.layout import row_type
-from ...surfels import LAYOUT, Surfels
+from ...sampling import surfels_from_points
+from ...streaming import write_points
+from ...surfels import Surfels
 from ..scan_color_settings import ATTRIBUTE_OF
-
-#: Points that are converted together, and at most how many times so many at once.
-_PORTION, _THREADS = 1 << 19, 2
 
 #: How far above a scan, in its extents, what flew over it is taken to have been.
 _HIGH = 100.0
@@ -33,19 +21,13 @@ _HIGH = 100.0
 #: Shares of the values below and above the range of colours.
 _OUTSIDE = 0.02
 
-#: Share of the progress at which sorting ends.
-_SORTED = 0.1
-
-#: Seconds between two reports while portions are converted.
-_TICK = 0.2
-
 
 class StoredScan:
     """The points of a file on their way to surfels in a file of blocks.
 
     pieces: the points. offset: (3,) what is taken from their coordinates while they are converted. eye: (3,) what
     normals face in these, or None. keywords: of `surfels_from_points`. color_by: what the colours show, as in
-    `scan_color_settings`. portion: points that are converted together.
+    `scan_color_settings`.
     """
 
     def __init__(
@@ -55,9 +37,8 @@ class StoredScan:
         eye: np.ndarray | None,
         keywords: dict,
         color_by: str = "COLOR",
-        portion: int = _PORTION,
     ):
-        self._pieces, self._offset, self._keywords, self._portion = pieces, offset, keywords, portion
+        self._pieces, self._offset, self._keywords = pieces, offset, keywords
         self._left_out = 0
         self.notes = [*pieces.said]
         sample = pieces.sample
@@ -76,23 +57,23 @@ class StoredScan:
         self._paint = self._painter(color_by)
 
     def write(self, path: str | os.PathLike, progress: Callable[[float, str], bool]) -> int:
-        """Write the file; returns the number of surfels. progress: as of `streaming.write_blocks`. Raises
-        WritingCancelled, and as `new_file` and `surfels_from_points`."""
-        kind = row_type([*LAYOUT, *(CLIP_FIELDS if self._keywords["crease_angle"] is not None else ())])
-        with new_file(path) as file:
-
-            def told(done: int) -> None:
-                if progress(_SORTED * done / max(self._pieces.count, 1), "Sorting") is False:
-                    raise WritingCancelled
-
-            count = self._pieces.count
-            files = PointFiles(
-                self._parts(), self._pieces.sample.positions - self._offset, count, self._portion, file.scratch, told
-            )
-            stored = file.write(self._converted(files, progress), kind, self._middle + self._offset, False)
-        if left_out := self._left_out + files.skipped:
+        """Write the file; returns the number of surfels. Raises as `streaming.write_points` and
+        `surfels_from_points`."""
+        pieces = self._pieces
+        count, nowhere = write_points(
+            path,
+            self._parts(),
+            pieces.sample.positions - self._offset,
+            pieces.count,
+            self._surfels_of,
+            origin=self._middle + self._offset,
+            neighbours=self._keywords["neighbours"],
+            has_clip_lines=self._keywords["crease_angle"] is not None,
+            progress=progress,
+        )
+        if left_out := self._left_out + nowhere:
             self.notes.append(f"Skipped {left_out:,} points that stand alone, repeat another or have no place")
-        return stored
+        return count
 
     def _parts(self) -> Iterator[dict[str, np.ndarray]]:
         """The points, as `PointFiles` take them."""
@@ -138,46 +119,6 @@ class StoredScan:
             return np.column_stack([colors, np.ones(len(colors), np.float32)])
 
         return painted
-
-    def _converted(
-        self, files: PointFiles, progress: Callable[[float, str], bool]
-    ) -> Iterator[tuple[Surfels, Hierarchy]]:
-        """The surfels of each file, in their order, and their hierarchies."""
-        shares, is_cancelled, count = np.zeros(max(len(files), 1)), [False], len(files)
-
-        def told(number: int, start: float, stop: float, share: float) -> bool:
-            shares[number] = start + (stop - start) * share
-            if is_cancelled[0]:
-                raise SamplingCancelled
-            return True
-
-        def job(number: int) -> tuple[Surfels, Hierarchy]:
-            part = self._surfels_of(*files.with_surroundings(number, self._keywords["neighbours"]),
-                                    partial(told, number, 0.0, 0.7))  # fmt: skip
-            return part, build_hierarchy(part, partial(told, number, 0.7, 1.0))
-
-        with ThreadPoolExecutor(_THREADS, "scan") as executor:
-            try:
-                waiting: list[Future] = []
-                for number in range(count + _THREADS):
-                    if number < count:
-                        waiting.append(executor.submit(job, number))
-                    if number < _THREADS:
-                        continue
-                    first = waiting.pop(0)
-                    while not wait([first], _TICK, FIRST_COMPLETED).done:
-                        self._tell(progress, shares)
-                    self._tell(progress, shares)
-                    part, hierarchy = first.result()
-                    if len(part):
-                        yield part, hierarchy
-            except BaseException:
-                is_cancelled[0] = True
-                raise
-
-    def _tell(self, progress: Callable[[float, str], bool], shares: np.ndarray) -> None:
-        if progress(_SORTED + (1 - _SORTED) * float(shares.mean()), "Converting") is False:
-            raise WritingCancelled
 
     def _surfels_of(self, arrays: dict[str, np.ndarray], own: int, told: Callable[[float], bool]) -> Surfels:
         """The surfels of the first `own` points."""
