@@ -30,6 +30,7 @@ from .geometry import surfel_files
 from .ui import (
     camera_panels,
     light_panels,
+    measured_panel,
     object_panels,
     passes_panel,
     preset_panels,
@@ -49,6 +50,7 @@ MODULES = (
     render_engine,
     preset_panels,
     render_panels,
+    measured_panel,
     report_panel,
     passes_panel,
     light_panels,

@@ -16,6 +16,7 @@ _ROOT = Path(__file__).resolve().parents[2]
 _SETTINGS = "bpy.types.surfelsplattingsettings"
 _CONVERT, _POINTS = "guide.md#convert-a-mesh", "guide.md#scans"
 _FILES = "guide.md#more-surfels-than-memory"
+_AIM = "choose.md#an-error-or-a-time"
 _LIGHT = "guide.md#light-materials-and-cameras"
 
 #: Blender's name of a setting or an operator in lower case, with * for any letters -> page and heading; the first that
@@ -27,6 +28,9 @@ PAGES = (
     (f"{_SETTINGS}.accumulation", "choose.md#memory"),
     (f"{_SETTINGS}.mesh_*", "choose.md#density"),
     (f"{_SETTINGS}.render_meshes", _CONVERT),
+    (f"{_SETTINGS}.aim", _AIM),
+    (f"{_SETTINGS}.target_error", _AIM),
+    (f"{_SETTINGS}.time_budget", _AIM),
     (f"{_SETTINGS}.*samples", "guide.md#render"),
     (f"{_SETTINGS}.*supersampling", "choose.md#preset"),
     (f"{_SETTINGS}.broken_objects", "guide.md#render"),
@@ -40,6 +44,7 @@ PAGES = (
     ("bpy.types.surfelconversionsettings*", _CONVERT),
     ("bpy.types.surfelpoints*", _POINTS),
     ("bpy.types.surfelsource*", _CONVERT),
+    ("bpy.types.surfelseries*", _POINTS),
     ("bpy.types.surfelrecord*", _CONVERT),
     ("bpy.types.surfelpreferences.most_megabytes", "choose.md#memory"),
     ("bpy.types.surfelpreferences.stream_megabytes", _FILES),
@@ -56,8 +61,10 @@ PAGES = (
     ("bpy.ops.export_scene.surfels_ply*", _POINTS),
     ("bpy.ops.object.surfels_filter*", _POINTS),
     ("bpy.ops.object.surfels_select_strays*", _POINTS),
+    ("bpy.ops.object.surfels_scanner_camera*", _POINTS),
     ("bpy.ops.render.surfel_scan_look*", _POINTS),
     ("bpy.ops.render.surfel_preset*", "choose.md#preset"),
+    ("bpy.ops.render.surfel_measure*", _AIM),
 )
 
 

@@ -16,6 +16,7 @@ from .enum_values import check_choices
 from .ids import RENDER_SETTINGS
 from .mesh_sampling_settings import MeshSamplingProperties
 from .registration import with_property
+from .render_settings.aim import AimProperties
 from .render_settings.light import LightProperties, light_values
 from .render_settings.lines import LineProperties, lines_of
 from .render_settings.samples import SampleProperties, final_samples
@@ -25,6 +26,7 @@ from .render_settings.shading import ShadingProperties, shading_values
 class SurfelSplattingSettings(
     ShadingProperties,
     LineProperties,
+    AimProperties,
     SampleProperties,
     LightProperties,
     MeshSamplingProperties,

@@ -4,14 +4,13 @@
 scene, camera, settings -> exact pictures -> a row for each choice -> a page, or the choice that keeps a target
 """
 
-from .choices import Choice, choices_for, series_of
-from .exact import Cancelled, ExactPictures
+from .choices import Choice, choices_for, quick_choices, series_of
+from .exact import ExactPictures
 from .measuring import Row, measure
 from .page import page
 from .target import Pace, Promise, Target, chosen
 
 __all__ = (
-    "Cancelled",
     "Choice",
     "ExactPictures",
     "Pace",
@@ -22,5 +21,6 @@ __all__ = (
     "chosen",
     "measure",
     "page",
+    "quick_choices",
     "series_of",
 )

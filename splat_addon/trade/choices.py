@@ -35,7 +35,7 @@ def choices_for(settings: Settings, plan: FramePlan) -> list[Choice]:
     """What to try, first the settings as they are, and nothing twice. plan: of a frame, which tells what the scene
     contains."""
     found, seen = [], set()
-    for choice in (Choice("As set", {}), *_series(settings), *_numbers(settings, plan)):
+    for choice in (Choice("As set", {}), *_series(), *_numbers(settings, plan)):
         made = choice.of(settings)
         if made not in seen:
             seen.add(made)
@@ -43,12 +43,21 @@ def choices_for(settings: Settings, plan: FramePlan) -> list[Choice]:
     return found
 
 
-def series_of(settings: Settings) -> list[Choice]:
+def series_of() -> list[Choice]:
     """The two ways of filtering a pixel, each with more and fewer samples."""
-    return list(_series(settings))
+    return list(_series())
 
 
-def _series(settings: Settings) -> Iterator[Choice]:
+def quick_choices() -> list[Choice]:
+    """A few of `series_of`, between which and beyond which others can be expected."""
+    return [choice for choice in _series() if choice.name in _QUICK]
+
+
+#: The names of those that the first picture of a render is measured with.
+_QUICK = ("Preview", "Balanced, 1 sample", "Balanced, 4 samples", "Final, 2 x 2", "Final, 4 x 4")
+
+
+def _series() -> Iterator[Choice]:
     preview, balanced, final = (PRESETS[name] for name in ("preview", "balanced", "final"))
     yield Choice(preview.label, {**preview.values, "samples": 1})
     for samples in BALANCED_SAMPLES:

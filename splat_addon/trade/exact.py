@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ..differences import psnr
-from ..rendering import Camera, Renderer, Scene, Settings
+from ..rendering import Camera, RenderCancelled, Renderer, Scene, Settings
 from ..rendering.assembly.accumulation import pixel_offset, sample_camera
 
 #: Samples along each side of a pixel of each picture.
@@ -29,10 +29,6 @@ Told = Callable[[float], bool | None]
 
 def nobody(share: float) -> None:
     """Is told of the progress where nobody asks."""
-
-
-class Cancelled(Exception):
-    """Whoever was told of the progress wants no more."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +49,7 @@ class ExactPictures:
         told: Told = nobody,
     ) -> ExactPictures:
         """Draw them. pictures: the number for the Gaussian, a multiple of 8; the box has a quarter of it. Raises
-        `Cancelled`, and ValueError for a camera that is a panorama or for too few pictures."""
+        `RenderCancelled`, and ValueError for a camera that is a panorama or for too few pictures."""
         if not isinstance(camera, Camera):
             raise ValueError("A panorama has no exact picture to compare with: choose another camera.")
         if pictures < 8 or pictures % 8:
@@ -66,7 +62,7 @@ class ExactPictures:
             halves = [0.0, 0.0]
             for number, moved in enumerate(_cameras(camera, name, count)):
                 if told(done / total) is False:
-                    raise Cancelled
+                    raise RenderCancelled
                 color = renderer.render(scene, moved, replace(whole, supersampling=edge), is_repeatable=True).color
                 # one half has the first of each pair of places, the other the second
                 half = number % 2

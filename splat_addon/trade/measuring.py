@@ -11,9 +11,9 @@ from time import perf_counter
 import numpy as np
 
 from ..differences import flip, psnr
-from ..rendering import Camera, Renderer, Scene, Settings
+from ..rendering import Camera, RenderCancelled, Renderer, Scene, Settings
 from .choices import Choice
-from .exact import Cancelled, ExactPictures, Told, nobody
+from .exact import ExactPictures, Told, nobody
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,12 +51,12 @@ def measure(
     clock: Callable[[], float] = perf_counter,
 ) -> Iterator[Row]:
     """Yield a row for each choice, once it has been drawn in all turns; an untimed picture comes before them. Raises
-    `Cancelled`, and as `Renderer.render`."""
+    `RenderCancelled`, and as `Renderer.render`."""
     for number, choice in enumerate(choices):
         wanted, times = choice.of(settings), []
         for turn in range(turns + 1):
             if told((number + turn / (turns + 1)) / len(choices)) is False:
-                raise Cancelled
+                raise RenderCancelled
             started = clock()
             frame = renderer.render(scene, camera, wanted, is_repeatable=True)
             times.append(clock() - started)

@@ -15,9 +15,8 @@ from PIL import Image
 
 from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.metrics import psnr
-from splat_addon.rendering import Equirectangular, Panorama, Renderer, Settings, look_at
+from splat_addon.rendering import Equirectangular, Panorama, RenderCancelled, Renderer, Settings, look_at
 from splat_addon.trade import (
-    Cancelled,
     Choice,
     ExactPictures,
     Pace,
@@ -64,7 +63,7 @@ def test_rows_tell_how_far_each_choice_is_off_and_what_it_takes(shot, on_device)
 
 
 def test_measuring_ends_when_nobody_wants_it(shot, on_device):
-    with pytest.raises(Cancelled):
+    with pytest.raises(RenderCancelled):
         on_device(lambda device: ExactPictures.drawn(Renderer(device), *shot, FLAT, told=lambda share: share < 0.3))
 
 
@@ -109,7 +108,7 @@ def scenes_with_clocks(draw):
 def test_a_promised_time_and_error_are_kept(truth, room):
     """Within 15 % for every scene, with clocks that are off by 3 %."""
     flip, seconds = truth
-    rows = [row(choice, flip(choice), seconds(choice)) for choice in series_of(FLAT)]
+    rows = [row(choice, flip(choice), seconds(choice)) for choice in series_of()]
     cheapest = min(each.seconds for each in rows)
     in_time = chosen(rows, Target(seconds=cheapest * 1.05 * room))
     assert in_time.is_kept and seconds(in_time.choice) <= 1.15 * cheapest * 1.05 * room
@@ -130,7 +129,7 @@ def test_what_cannot_be_kept_is_said():
 
 def test_pictures_that_take_longer_have_fewer_samples():
     pace = Pace()
-    rows = [row(choice, 0.1 / samples_of(choice), samples_of(choice)) for choice in series_of(FLAT)]
+    rows = [row(choice, 0.1 / samples_of(choice), samples_of(choice)) for choice in series_of()]
     before = chosen(rows, Target(seconds=16.5), pace.factor)
     pace.drawn(before.seconds, 2 * before.seconds)
     after = chosen(rows, Target(seconds=16.5), pace.factor)

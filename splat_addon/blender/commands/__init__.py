@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`blender FILE.blend --command surfels convert|points|render|merge|store|info|template`: for farms and scripts.
+"""`blender FILE.blend --command surfels convert|points|render|merge|measure|store|info|template`: for farms, scripts.
 
 Each command may be stopped at any moment and run again: existing results are kept, missing ones are made, and a file
 gets its name only once it is complete. Exit codes: 0 done, 1 failed, after one sentence, 2 wrong arguments.
@@ -14,7 +14,7 @@ import bpy
 
 from ...faults import sentence_of
 from .. import doors
-from . import convert, info, merge, points, render, store, template
+from . import convert, info, measure, merge, points, render, store, template
 
 NAME = "surfels"
 
@@ -23,6 +23,7 @@ _COMMANDS = {
     "points": points,
     "render": render,
     "merge": merge,
+    "measure": measure,
     "store": store,
     "info": info,
     "template": template,

@@ -7,22 +7,27 @@ import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
+from time import perf_counter
 from typing import NamedTuple
 
 import bpy
 
 from ...faults import is_worded, sentence_of
-from ...rendering import Frame, RenderCancelled, Renderer, open_device
+from ...rendering import Camera, Frame, Panorama, RenderCancelled, Renderer, Scene, open_device
 from ..cameras import depth_of_field_notes, rendered_part, view_camera
 from ..doors import unattended, with_handlers
 from ..export.live_meshes import LiveMeshes
 from ..export.notes import Notes
 from ..export.scene import SurfelStore, export_scene
+from ..ids import RENDER_SETTINGS
 from ..materials import matcap_images
 from ..preferences import most_bytes
 from ..properties import final_settings, stops_where_broken
+from ..render_settings.aim import target_of
 from .motion_blur import motion_blur_notes, moving_time, shutter_times
 from .render_passes import absent_passes, hand_over, outputs_of
+from .targets import Drawing, Targets
 
 #: Statistics of the last rendered frame, for scripts: see `Renderer`, plus `notes`, and in `live_meshes` the counts of
 #: `LiveMeshes`.
@@ -33,26 +38,33 @@ class Exchange(NamedTuple):
     """What the engine does beside a render that Blender asks for, by the names of a view layer and a view.
 
     kept: called with each frame that was drawn; to keep tiles. given: returns a frame instead of drawing it; of tiles
-        that were joined.
+        that were joined. drawn_by: draws each picture instead of the renderer; to measure the scene.
     """
 
     kept: Callable[[str, str, Frame], None] | None = None
     given: Callable[[str, str], Frame | None] | None = None
+    drawn_by: Callable[[Drawing], Frame] | None = None
 
 
 _exchange = Exchange()
 
 
+def exchange(**callbacks) -> None:
+    """Exchange frames with the renders that follow: Blender hands nothing on to an engine. callbacks: fields of
+    `Exchange`; without any, nothing is exchanged."""
+    global _exchange
+    _exchange = Exchange(**callbacks)
+
+
 @contextmanager
 def exchanging(**callbacks) -> Iterator[None]:
-    """Exchange frames with the renders within this context: Blender hands nothing on to an engine. callbacks: fields of
-    `Exchange`."""
-    global _exchange
-    before, _exchange = _exchange, Exchange(**callbacks)
+    """Exchange frames with the renders within this context, as in `exchange`."""
+    before = _exchange
+    exchange(**callbacks)
     try:
         yield
     finally:
-        _exchange = before
+        exchange(**before._asdict())
 
 
 def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> None:
@@ -125,30 +137,39 @@ def _hand_over_given(engine, depsgraph) -> None:
 def _picture(engine, depsgraph, resources: _Resources, settings, turn: tuple[int, int]) -> tuple[Frame, Notes]:
     """Draw the picture of the engine's active view, number `turn[0]` of `turn[1]`."""
     scene, notes = depsgraph.scene, Notes()
-    times = shutter_times(scene, depsgraph.view_layer, settings.samples)
     # while the shutter is open, a marker may make another camera the scene's; the picture is this one's
     camera = engine.camera_override or scene.camera
     camera = camera and camera.original
+
+    def read() -> tuple[Scene, Camera | Panorama]:
+        exported, said = _read(depsgraph, resources)
+        if said.left_out and not engine.is_preview and stops_where_broken(scene):
+            raise ValueError(_left_out_sentence(said.left_out))
+        notes.counts |= said.counts
+        return exported, view_camera(engine, depsgraph, camera and camera.evaluated_get(depsgraph))
+
+    told, part = partial(_progress, engine, turn), rendered_part(scene.render)
+    target = None if engine.is_preview else target_of(getattr(scene, RENDER_SETTINGS))
+    begun, first = perf_counter(), None
+    if target or _exchange.drawn_by:
+        first = exported, seen = read()
+        drawing = Drawing(resources.renderer, exported, seen.cropped(*part) if part else seen, settings, told)
+        if _exchange.drawn_by:
+            return _exchange.drawn_by(drawing), notes
+        settings = resources.targets.settings_for(target, drawing, perf_counter() - begun)
+    times = shutter_times(scene, depsgraph.view_layer, settings.samples)
 
     def moments(go):
         for time in times or [None]:
             if time is not None:
                 go(time)
-            exported, said = _read(depsgraph, resources)
-            if said.left_out and not engine.is_preview and stops_where_broken(scene):
-                raise ValueError(_left_out_sentence(said.left_out))
-            notes.counts |= said.counts
-            yield exported, view_camera(engine, depsgraph, camera and camera.evaluated_get(depsgraph))
+            yield first if first and time is None else read()
 
     with moving_time(engine, depsgraph) as go:
-        frame = resources.renderer.render_moments(
-            moments(go),
-            max(len(times), 1),
-            settings,
-            progress=lambda *step: _progress(engine, turn, *step),
-            part=rendered_part(scene.render),
-            is_repeatable=True,
-        )
+        count = max(len(times), 1)
+        frame = resources.renderer.render_moments(moments(go), count, settings, told, part, is_repeatable=True)
+    if target:
+        resources.targets.was_drawn(notes)
     if frame.stats["unread"] and not engine.is_preview and stops_where_broken(scene):
         raise ValueError(_left_out_sentence(frame.stats["unread"]))
     for sentence in depth_of_field_notes(camera.evaluated_get(depsgraph), depsgraph, settings.samples):
@@ -181,6 +202,7 @@ def _tell(engine, frame: Frame, notes: Notes, resources: _Resources) -> None:
         engine.report({"WARNING"}, sentence)
     last_frame_stats.clear()
     last_frame_stats.update(frame.stats, notes=notes.sentences(), live_meshes=dict(resources.live_meshes.counts))
+    last_frame_stats["promise"] = resources.targets.promise
     counts = {"splats": frame.stats["splats_drawn"], "polygons": frame.stats["polygons"]}
     drawn = " and ".join(f"{count:,} {name}" for name, count in counts.items() if count)
     engine.update_stats("", f"{drawn or 'Nothing'} in {frame.stats['milliseconds']:.0f} ms")
@@ -228,6 +250,7 @@ class _Resources:
         self.are_images_edited = False
         self.store = SurfelStore()
         self.live_meshes = LiveMeshes(most)
+        self.targets = Targets()
         self.renderer = Renderer(open_device("blender"))
 
 

@@ -9,9 +9,11 @@ import bpy
 
 from ...rendering.methods import get_method
 from ..doors import register_classes_factory
+from ..engine.final_render import last_frame_stats
 from ..ids import ENGINE, RENDER_SETTINGS, TEXTS
 from ..mesh_sampling_settings import NUMBERED
 from ..operators.render_preset import draw_presets
+from ..render_settings.aim import ERROR, SETTINGS
 from ..render_settings.samples import blurs, is_coarser_than_viewport
 from ..spoken import said
 from .engine_panel import EnginePanel
@@ -38,13 +40,26 @@ class RENDER_PT_surfel_sampling(_RenderPanel, bpy.types.Panel):
         RENDER_PT_surfel_presets.draw_panel_header(self.layout)
 
     def draw(self, context):
+        EnginePanel.draw(self, context)
         properties = getattr(context.scene, RENDER_SETTINGS)
+        self.layout.prop(properties, "aim")
+        if properties.aim != SETTINGS:
+            self._draw_target(properties)
+            return
         draw_presets(self.layout, properties)
         super().draw(context)
         for blur in blurs_that_need_samples(context.scene, context.view_layer):
             self.layout.label(text=said("{blur} needs more samples", blur=said(blur)), icon="INFO")
         if is_coarser_than_viewport(context.scene, context.view_layer):
             self.layout.label(text="Fewer samples than the viewport", icon="INFO")
+
+    def _draw_target(self, properties) -> None:
+        """The target, what was chosen for it and why, and what it does not decide."""
+        self.layout.prop(properties, "target_error" if properties.aim == ERROR else "time_budget")
+        if promise := last_frame_stats.get("promise"):
+            self.layout.label(text=promise.why, icon="CHECKMARK" if promise.is_kept else "ERROR", translate=False)
+        for name in ("viewport_samples", "viewport_supersampling"):
+            self.layout.prop(properties, name)
 
 
 def blurs_that_need_samples(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer) -> Iterator[str]:
