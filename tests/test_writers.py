@@ -23,7 +23,7 @@ ALLOWED = {
     "scripts/bench/fuzz_scenes/__init__.py": {"open": "what workers print, while they do"},
     "scripts/bench/fuzz_scenes/worker.py": {"fdopen": "a pipe"},
     "scripts/bench/leaves.py": {"save": "to the stream of `whole_file`"},
-    "scripts/bench/reflecting.py": {"save": "to the stream of `whole_file`"},
+    "scripts/bench/reflecting/__init__.py": {"save": "to the stream of `whole_file`"},
     "scripts/bench/streaming.py": {"unlink": "its own file, after the last measurement"},
     "scripts/build.py": {
         "ZipFile": "scratch in a temporary folder",

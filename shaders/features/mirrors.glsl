@@ -6,31 +6,16 @@
 //          rendering/probes/mirrors.py.
 
 #part world_light
+#include "lib/picture_maps.glsl"
+
 float mirroring = 0.0;  // 1 if this surface is the mirror's
 vec3 mirroring_place;
 
-// A map, and the row at which it begins.
-ivec3 mirror_map(int number) {
-  ivec2 size = ivec2(frame.mirror_size);
-  int row = number == 0 ? 0 : 2 * size.y;
-  for (int k = 0; k < number; k++) {
-    size = (size + 1) / 2;
-    if (k + 1 < number) row += size.y;
-  }
-  return ivec3(size, row);
-}
-
-// Interpolated at a place in pixels of the whole picture.
 vec4 mirror_map_at(int number, vec2 place) {
-  ivec3 map = mirror_map(number);
-  vec2 at = clamp(place / float(1 << number) - 0.5, vec2(0.0), vec2(map.xy - 1));
-  ivec2 low = ivec2(floor(at)), high = min(low + 1, map.xy - 1);
-  vec2 share = at - vec2(low);
-  vec4 below = mix(texelFetch(mirror_picture, ivec2(low.x, map.z + low.y), 0),
-                   texelFetch(mirror_picture, ivec2(high.x, map.z + low.y), 0), share.x);
-  vec4 above = mix(texelFetch(mirror_picture, ivec2(low.x, map.z + high.y), 0),
-                   texelFetch(mirror_picture, ivec2(high.x, map.z + high.y), 0), share.x);
-  return mix(below, above, share.y);
+  PictureTexels at = picture_texels(picture_map(ivec2(frame.mirror_size), number), number, place);
+  vec4 below = mix(texelFetch(mirror_picture, at.low_high.xy, 0), texelFetch(mirror_picture, at.low_high.zy, 0), at.share.x);
+  vec4 above = mix(texelFetch(mirror_picture, at.low_high.xw, 0), texelFetch(mirror_picture, at.low_high.zw, 0), at.share.x);
+  return mix(below, above, at.share.y);
 }
 
 // The mirror's picture is turned from left to right.
@@ -54,7 +39,7 @@ void mirrors_reflected(inout vec3 light, vec3 direction, float roughness) {
   vec3 image = mirroring_place + behind * away;
   vec2 place = image.z < 0.0 || view.is_parallel > 0.5 ? mirror_place_of(image) : vec2(texel) + 0.5;
   float width = roughness * roughness * away / (view.is_parallel > 0.5 ? 1.0 : reach + away);
-  float number = clamp(log2(max(MIRROR_TEXEL * width * frame.mirror_window.w, 1.0)), 0.0, float(MIRROR_MAPS - 1));
+  float number = clamp(log2(max(MIRROR_TEXEL * width * frame.mirror_window.w, 1.0)), 0.0, float(PICTURE_MAPS - 1));
   int finer = int(number);
   vec4 seen = mirror_map_at(finer, place);
   if (number > float(finer)) seen = mix(seen, mirror_map_at(finer + 1, place), number - float(finer));

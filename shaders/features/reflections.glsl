@@ -200,6 +200,14 @@ void reflections_reflected(inout vec3 light, vec3 direction, float roughness) {
   light = mix(light, seen.rgb + (1.0 - seen.a) * sent_reflection(direction, roughness), reflecting);
 }
 
+void reflections_through(inout vec3 light, vec3 place, vec3 direction, float roughness) {
+  if (!(reflecting > 0.0)) return;
+  vec3 own = reflecting_place;
+  reflecting_place += mat3(frame.to_probes) * place;
+  reflections_reflected(light, direction, roughness);
+  reflecting_place = own;
+}
+
 #part shaded_sample
 // Surfaces that face away from its middle belong to a probe's box up to its rim, with room for rounding. Of others, such
 // as a floor under what has the probe, it fades out between these shares of the half-axes, so that no rim shows.

@@ -1,5 +1,6 @@
 // References: lib/world_light.
-// Summary: the world's light on a surface. Hooks: `diffuse` and `reflected` reduce the incoming light.
+// Summary: the world's light on a surface. Hooks: `diffuse` and `reflected` change the incoming light,
+//          `through` changes the light that arrives at another place.
 
 #include "lib/world_light/{world_light}.glsl"
 
@@ -13,5 +14,12 @@ vec3 world_irradiance(vec3 normal) {  // over pi
 vec3 world_reflection(vec3 direction, float roughness) {
   vec3 light = sent_reflection(direction, roughness);
   #hook reflected(light, direction, roughness)
+  return light;
+}
+
+// place: from the surface's own, view space.
+vec3 world_through(vec3 place, vec3 direction, float roughness) {
+  vec3 light = sent_reflection(direction, roughness);
+  #hook through(light, place, direction, roughness)
   return light;
 }

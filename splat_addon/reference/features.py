@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import partial
 
-from ..rendering.scene import Material
+from ..rendering.scene import Finish, Material
 from ..rendering.scene.eye_dome import EyeDome
 from ..rendering.scene.light import Light
 from ..rendering.scene.lines import Lines
@@ -57,6 +57,8 @@ def _lights():
     yield row("ambient occlusion", "none", settings(ambient_occlusion=1.0), is_quick=True)
     metal = shots.materials(Material(roughness=0.2, metallic=1.0))
     yield row("reflections, drawn before", "metal", together(metal, settings(reflections=True)), metal, is_quick=True)
+    clear = shots.materials(Material(roughness=0.0, finish=Finish(transmission=1.0)))
+    yield row("glass", "opaque", together(clear, settings(refraction=True)), clear, is_quick=True)
     yield row("a picture of the world", "an even world", world(environment=shots.sky()), is_quick=True)
     for kind, lamps in (("hard", HARD), ("soft", LAMPS)):
         for name, lamp in lamps.items():

@@ -23,7 +23,7 @@ from .detail.streamed import Streamed
 from .device import Device
 from .device.interface import Target, texture_bytes
 from .device.interface import Texture as DeviceTexture
-from .features import bounced_light, mirrors, reflections
+from .features import bounced_light, glass, mirrors, reflections
 from .features.outputs import check_samplers
 from .features.sample_sum import SUM
 from .frame import OUTPUTS, Frame
@@ -199,7 +199,8 @@ class Renderer:
         return Shared(scene, frame_plan, settings, repeated, before, *seen, light)
 
     def _reflected(self, scene: Scene, camera: Camera, settings: Settings, frame_plan: FramePlan, is_repeatable: bool):
-        """What the plan's probes and mirror see, drawn if anything in it has changed; None for what it lacks."""
+        """What the plan's probes and mirror see, and what is behind its glass, drawn if anything in it has changed;
+        None for what it lacks."""
 
         def draw(seen: Scene, camera: Camera, of: Viewers, plain: Settings) -> Frame:
             shared = self._planned(seen, camera, plain, is_repeatable=is_repeatable, viewers=of)
@@ -210,6 +211,7 @@ class Renderer:
         return (
             self.probes.pictures(scene, probes, settings, draw) if probes else None,
             self.probes.mirror(scene, mirror, camera, settings, draw) if mirror else None,
+            self.probes.glass(scene, camera, settings, draw) if found.get(glass.glass) else None,
         )
 
     def _was_drawn(self, scene: Scene) -> None:

@@ -84,6 +84,7 @@ class Settings:
     ambient_occlusion: distance, in scene units, up to which visible surfaces block the world's light from one another;
         0 disables it, and infinity is half the distance to the viewer.
     reflections: glossy objects reflect what stands around them, and not only the world.
+    refraction: what transmits light shows what is behind it; otherwise it is drawn opaque.
     bounces: how often surfaces reflect light to one another before it counts no more; 0 disables bounced light, and
         with it emission as light, and what is in the way of the world's.
     layers: maximum number of transparent surfaces behind one another per pixel. blends_rest: the last layer blends all
@@ -125,6 +126,7 @@ class Settings:
     shadow_resolution: int = 1024
     ambient_occlusion: float = 0.0
     reflections: bool = False
+    refraction: bool = False
     bounces: int = 0
     layers: int = 3
     blends_rest: bool = True

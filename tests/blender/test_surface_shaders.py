@@ -98,9 +98,9 @@ def painted(tree, color, roughness):
     [
         ("Glossy", 0.3, 1, None),
         ("Metallic", 0.3, 1, "a metal"),
-        ("Glass", 0.3, 0, "an opaque"),
-        ("Refraction", 0.3, 0, "an opaque"),
-        ("Translucent", 1, 0, "a matt"),
+        ("Glass", 0.3, 0, None),
+        ("Refraction", 0.3, 0, None),
+        ("Translucent", 1, 0, None),
         ("Toon", 1, 0, "a matt"),
     ],
 )

@@ -353,12 +353,27 @@ def mirrored(scene, camera):
     return replace(scene, polygons=placed, world=(0.3, 0.4, 0.5)), camera
 
 
+def glassy(scene, camera):
+    """Balls of clear and frosted glass, as polygons and as surfels, before a wall."""
+    clear = Material(roughness=0.0, finish=Finish(transmission=1.0))
+    frosted = Material(roughness=0.4, finish=Finish(transmission=0.8, coat=0.3))
+    shapes = scenes.round_polygons(12), scenes.sphere(2000)[0].surfels[0].surfels
+    placed = []
+    for number, (shape, material) in enumerate(zip(shapes * 2, (clear, frosted, frosted, clear), strict=True)):
+        matrix = np.diag((0.4, 0.4, 0.4, 1.0))
+        matrix[:3, 3] = 0.9 * (number % 2) - 0.45, -0.6, 0.9 * (number // 2) - 0.2
+        placed.append((PolygonInstance, Instance)[number % 2](shape, matrix, materials=(material,)))
+    more = {"surfels": (*scene.surfels, *placed[1::2]), "polygons": (*scene.polygons, *placed[::2])}
+    return replace(scene, **more, world=(0.3, 0.4, 0.5)), camera
+
+
 #: tests/rendering/test_sun_apart.py, test_sides.py, test_terminators.py and test_styles.py have facts about them.
 SPECIAL = {
     "sun_apart": lambda: with_its_sun_apart(*scenes.torus(count=COUNT, size=SIZE)),
     "styles": lambda: with_styles(*scenes.polygons(count=COUNT, size=SIZE)),
     "nothing": lambda: of_nothing(*scenes.torus(count=100, size=SIZE)),
     "cards": lambda: with_cards(*scenes.torus(count=COUNT, size=SIZE)),
+    "glass": lambda: glassy(*scenes.polygons(count=COUNT, size=SIZE)),
     "mirrored": lambda: mirrored(*scenes.polygons(count=COUNT, size=SIZE)),
 }
 
@@ -394,6 +409,7 @@ CASES = [
     ("polygons", "quad", {"ambient_occlusion": 1.0}),
     ("torus", "quad", {"shading": "flat", "eye_dome": EyeDome()}),
     ("mirrored", "quad", {"reflections": True}),
+    *(("glass", method, {"refraction": True, "reflections": True}) for method in ("quad", "mip")),
     *(("polygon_shadows", method, {"lights_splats": True}) for method in ("quad", "mip")),
     ("large_lamp_shadows", "quad", {}),
     ("many_finishes", "mip", {}),

@@ -25,7 +25,6 @@ SOCKETS = {
         "Diffuse Roughness": 0.0,
         "Subsurface Weight": 0.0,
         "Anisotropic": 0.0,
-        "Transmission Weight": 0.0,
         "Coat Normal": (0.0, 0.0, 0.0),
         "Thin Film Thickness": 0.0,
     },
@@ -38,9 +37,6 @@ SOCKETS = {
 #: shader node type -> how this engine draws it instead
 _INSTEAD = {
     "BSDF_METALLIC": "as a metal without Edge Tint",
-    "BSDF_GLASS": "as an opaque surface of its colour",
-    "BSDF_REFRACTION": "as an opaque surface of its colour",
-    "BSDF_TRANSLUCENT": "as a matt surface, lit on the side that is seen",
     "SUBSURFACE_SCATTERING": "as a matt surface",
     "BSDF_TOON": "as a matt surface",
     "BSDF_SHEEN": "as a matt surface",

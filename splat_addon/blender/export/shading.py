@@ -170,9 +170,12 @@ def _mean(materials: list[Material], mixed: list[Part]) -> Material:
     """One material for several that a tree of shaders mixes; those that only emit light do not count."""
     shares = np.array([part.share * (part.shader.node.type != "EMISSION") for part in mixed])
     shares = shares if shares.any() else np.ones(len(mixed))
-    numbers = [(material.roughness, material.metallic, material.ior) for material in materials]
+    numbers = [
+        (one.roughness, one.metallic, one.ior, one.finish.transmission, one.finish.translucency) for one in materials
+    ]
+    *own, transmission, translucency = np.average(numbers, axis=0, weights=shares).tolist()
     finish = materials[int(shares.argmax())].finish
-    return Material(*np.average(numbers, axis=0, weights=shares).tolist(), finish=finish)
+    return Material(*own, finish=replace(finish, transmission=transmission, translucency=translucency))
 
 
 def _made(shader: Shader, material: bpy.types.Material, notes, own: Collection[str]) -> Material:
@@ -209,7 +212,12 @@ def _value(shader: Shader, name: str, fed: tuple[float, ...] | None):
 def _principled(plain: dict) -> Material:
     ior = _levelled(plain["IOR"], plain["Specular IOR Level"])
     sent = _sent(plain, "Emission Color", "Emission Strength")
-    finish = Finish(specular_tint=plain["Specular Tint"][:3], **_coat(plain), **_sheen(plain))
+    finish = Finish(
+        specular_tint=plain["Specular Tint"][:3],
+        transmission=plain["Transmission Weight"],
+        **_coat(plain),
+        **_sheen(plain),
+    )
     return Material(plain["Roughness"], plain["Metallic"], ior, sent, finish=finish)
 
 
@@ -240,10 +248,8 @@ def _sent(plain: dict, color: str, strength: str) -> tuple[float, float, float]:
     return tuple(c * plain[strength] for c in plain[color][:3])
 
 
-_DIELECTRIC = (
-    {"Roughness": "roughness", "IOR": ""},
-    lambda plain: Material(plain["Roughness"], ior=_levelled(plain["IOR"], 0.5)),
-)
+_GLASS_SOCKETS = {"Roughness": "roughness", "IOR": ""}
+_GLASS = Finish(transmission=1.0, tint_power=1.0)
 #: A surface without a coat.
 _MATT = ({}, lambda plain: Material(roughness=1.0, ior=1.0))
 
@@ -264,6 +270,7 @@ _SHADERS = {
             "Sheen Weight": "",
             "Sheen Roughness": "",
             "Sheen Tint": "",
+            "Transmission Weight": "",
             "Emission Color": "emission",
             "Emission Strength": "emission",
         },
@@ -271,10 +278,17 @@ _SHADERS = {
     ),
     "BSDF_GLOSSY": ({"Roughness": "roughness"}, lambda plain: Material(plain["Roughness"], 1.0)),
     "BSDF_METALLIC": ({"Roughness": "roughness"}, lambda plain: Material(plain["Roughness"], 1.0)),
-    "BSDF_GLASS": _DIELECTRIC,
-    "BSDF_REFRACTION": _DIELECTRIC,
+    "BSDF_GLASS": (
+        _GLASS_SOCKETS,
+        lambda plain: Material(plain["Roughness"], ior=plain["IOR"], finish=_GLASS),
+    ),
+    # what it does not reflect it lets through, as if nothing were reflected at normal incidence
+    "BSDF_REFRACTION": (
+        _GLASS_SOCKETS,
+        lambda plain: Material(plain["Roughness"], ior=plain["IOR"], finish=replace(_GLASS, specular_tint=BLACK)),
+    ),
     "BSDF_DIFFUSE": _MATT,
-    "BSDF_TRANSLUCENT": _MATT,
+    "BSDF_TRANSLUCENT": ({}, lambda plain: Material(roughness=1.0, ior=1.0, finish=Finish(translucency=1.0))),
     "SUBSURFACE_SCATTERING": _MATT,
     "BSDF_TOON": _MATT,
     "BSDF_SHEEN": _MATT,

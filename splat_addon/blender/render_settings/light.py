@@ -48,6 +48,14 @@ class LightProperties:
         ),
         default=True,
     )
+    use_refraction: BoolProperty(
+        name="Refraction",
+        description=(
+            "Let glass show what stands behind it, bent, tinted and blurred; otherwise it is opaque. What is behind is "
+            "drawn again for each view"
+        ),
+        default=True,
+    )
     use_eye_dome: BoolProperty(
         name="Eye-Dome Lighting",
         description=(
@@ -82,6 +90,7 @@ def light_values(properties: LightProperties) -> dict:
         "eye_dome": _eye_dome(properties) if properties.use_eye_dome else None,
         "ambient_occlusion": _occlusion(properties),
         "reflections": properties.use_reflections,
+        "refraction": properties.use_refraction,
     }
 
 

@@ -637,6 +637,13 @@ GERMAN = {
         "Glänzende Objekte spiegeln lassen, was um sie herum steht. Es wird von jedem aus gezeichnet, wenn es sich "
         "geändert hat"
     ),
+    (
+        "Let glass show what stands behind it, bent, tinted and blurred; otherwise it is opaque. What is behind is "
+        "drawn again for each view"
+    ): (
+        "Glas zeigen lassen, was dahinter steht, gebrochen, gefärbt und unscharf; sonst ist es undurchsichtig. Was "
+        "dahinter ist, wird für jede Ansicht neu gezeichnet"
+    ),
     "Levels": "Stufen",
     "Levels of brightness that each light is shown in": "Helligkeitsstufen, in denen jede Lampe gezeigt wird",
     "Light": "Licht",
@@ -787,6 +794,7 @@ GERMAN = {
     ),
     "Reduction": "Reduktion",
     "Reflections": "Spiegelungen",
+    "Refraction": "Lichtbrechung",
     "Render Meshes as": "Meshes als",
     "Render as": "Rendern als",
     "Render without them, and name them in a warning": "Ohne sie rendern und sie in einer Warnung nennen",

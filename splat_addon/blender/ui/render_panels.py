@@ -214,6 +214,17 @@ class RENDER_PT_surfel_eye_dome(_RenderPanel, bpy.types.Panel):
         super().draw(context)
 
 
+class RENDER_PT_surfel_refraction(_RenderPanel, bpy.types.Panel):
+    bl_label = "Refraction"
+    bl_options = frozenset({"DEFAULT_CLOSED"})
+
+    def draw_header(self, context):
+        self.layout.prop(getattr(context.scene, RENDER_SETTINGS), "use_refraction", text="")
+
+    def draw(self, context):
+        pass
+
+
 class RENDER_PT_surfel_reflections(_RenderPanel, bpy.types.Panel):
     bl_label = "Reflections"
     bl_options = frozenset({"DEFAULT_CLOSED"})
@@ -317,6 +328,7 @@ ORDERED = (
     RENDER_PT_surfel_shadows,
     RENDER_PT_surfel_ambient_occlusion,
     RENDER_PT_surfel_reflections,
+    RENDER_PT_surfel_refraction,
     RENDER_PT_surfel_eye_dome,
     RENDER_PT_surfel_transparency,
     *SIMPLIFY,

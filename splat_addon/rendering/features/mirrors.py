@@ -7,7 +7,8 @@ import numpy as np
 
 from ..plan.graph import Part
 from ..plan.hosts import LIT_HOSTS
-from ..probes.mirrors import MAPS, mirror_of
+from ..probes.flat_pictures import PICTURE_MAPS
+from ..probes.mirrors import mirror_of
 from .reflections import missing
 
 
@@ -51,7 +52,7 @@ VALUES = {
     "mirror_scale": ("float", lambda tile: tile.view.scale),
 }
 INPUTS = {"mirror_picture": lambda tile: tile.resources.kept(tile.shared.mirror, tile.shared.mirror.texels)}
-CONSTANTS = {"MIRROR_MAPS": MAPS}
+CONSTANTS = {"PICTURE_MAPS": PICTURE_MAPS}
 
 
 def passes(planning):

@@ -14,6 +14,7 @@ from ..detail.history import NOTHING, History
 from ..device.interface import Pipeline, Texture, texture_bytes
 from ..identity import Identities
 from ..passes.decisions import shadows
+from ..probes.glass import GlassPicture
 from ..probes.mirrors import MirrorPicture
 from ..probes.pictures import ProbePictures
 from ..sample_views import SampleViews, clip_around
@@ -34,8 +35,8 @@ _MOST_BYTES = 1 << 26
 
 class Shared:
     """A scene, the plan of its picture, and what depends on nothing else. samples: of the picture that are drawn one
-    right after the other. history: as of `plan`. probes, mirror: what the plan's probes see, and
-    its mirror, if it has any. bounced: the scene's light, if the plan needs it."""
+    right after the other. history: as of `plan`. probes, mirror, glass: what the plan's probes see,
+    and its mirror, and what is behind its glass, if it has any. bounced: the scene's light, if the plan needs it."""
 
     def __init__(
         self,
@@ -46,10 +47,11 @@ class Shared:
         history: History = NOTHING,
         probes: ProbePictures | None = None,
         mirror: MirrorPicture | None = None,
+        glass: GlassPicture | None = None,
         bounced: BouncedLight | None = None,
     ):
         self.scene, self.plan, self.settings, self.samples, self.history = scene, plan, settings, samples, history
-        self.probes, self.mirror, self.bounced = probes, mirror, bounced
+        self.probes, self.mirror, self.glass, self.bounced = probes, mirror, glass, bounced
         self._kept: dict[Hashable, object] = {}
         self._tables: dict[tuple[bytes, bytes], Texture] = {}
         self._programs: dict[tuple, tuple[Pass, Pipeline]] = {}

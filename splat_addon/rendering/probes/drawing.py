@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws the pictures of a scene's probes and mirror, and keeps them as long as nothing in the scene changes."""
+"""Draws the pictures of a scene's probes and mirror and of what is behind its glass, and keeps them as long as nothing
+in the scene changes."""
 
 from __future__ import annotations
 
@@ -13,10 +14,12 @@ from ..contents import contents
 from ..frame import Frame
 from ..scene import Scene
 from ..scene.camera import Camera
+from ..scene.glass_surfaces import GlassSurfaces
 from ..scene.octahedral import Octahedral
 from ..scene.panorama import Panorama
 from ..settings import Settings
 from ..shadows.receivers import Viewers
+from .glass import GlassPicture, WithoutGlass, behind_camera, surfaces_of
 from .mirrors import Mirror, MirrorPicture, mirrored_camera
 from .pictures import ProbePictures, side_of
 from .places import Probe
@@ -34,6 +37,9 @@ class Probes:
     def __init__(self):
         self._kept: tuple[tuple, ProbePictures] | None = None
         self._mirrored: tuple[tuple, MirrorPicture] | None = None
+        self._surfaces: tuple[tuple, GlassSurfaces] | None = None
+        self._behind: tuple[tuple, GlassPicture] | None = None
+        self._without_glass = WithoutGlass()
 
     def pictures(self, scene: Scene, probes: tuple[Probe, ...], settings: Settings, draw: Draw) -> ProbePictures:
         """What the probes see: the same object as long as the scene is."""
@@ -42,7 +48,7 @@ class Probes:
         if self._kept is None or self._kept[0] != made_from:
             frames = []
             for probe in probes:
-                seen, panorama = _seen(scene, probe.left_out), _panorama(scene, probe, size)
+                seen, panorama = self._seen(scene, probe.left_out, settings), _panorama(scene, probe, size)
 
                 def drawn(camera, of, settings, progress, seen=seen) -> Frame:
                     return draw(seen, camera, of, settings)
@@ -57,20 +63,38 @@ class Probes:
         view = behind.matrix_world.tobytes(), behind.window, behind.size, behind.near, behind.far
         made_from = mirror, view, behind.is_orthographic, plain, contents(scene)
         if self._mirrored is None or self._mirrored[0] != made_from:
-            seen = draw(_seen(scene, mirror.left_out), behind, Viewers(behind, (behind,)), plain)
+            seen = draw(self._seen(scene, mirror.left_out, settings), behind, Viewers(behind, (behind,)), plain)
             self._mirrored = made_from, MirrorPicture(mirror, behind, seen)
         return self._mirrored[1]
 
+    def glass(self, scene: Scene, camera: Camera, settings: Settings, draw: Draw) -> GlassPicture:
+        """What a camera sees behind glass: the same object as long as both stay."""
+        plain, contents = replace(_plain(settings), supersampling=2), _contents(scene)
+        behind = behind_camera(camera)
+        if self._surfaces is None or self._surfaces[0] != contents:
+            self._surfaces = contents, surfaces_of(scene.table)
+        view = behind.matrix_world.tobytes(), behind.window, behind.size, behind.near, behind.far
+        made_from = view, behind.is_orthographic, plain, contents
+        if self._behind is None or self._behind[0] != made_from:
+            seen = draw(self._without_glass.of(scene), behind, Viewers(behind, (behind,)), plain)
+            self._behind = made_from, GlassPicture(self._surfaces[1], behind, seen)
+        return self._behind[1]
+
+    def _seen(self, scene: Scene, rows: tuple[int, ...], settings: Settings) -> Scene:
+        """The scene in which what is in these rows of its table, and clear glass, only casts its shadow."""
+        seen = _left_out(scene, rows)
+        return self._without_glass.of(seen) if settings.refraction else seen
+
     def forget(self) -> None:
-        self._kept = self._mirrored = None
+        self._kept = self._mirrored = self._surfaces = self._behind = None
 
 
 def _plain(settings: Settings) -> Settings:
     """Settings for what probes see: blurred and filtered later, and without what it reflects itself."""
     return replace(
         settings, method="quad", lines=None, eye_dome=None, supersampling=1, samples=1, multisampling=0,
-        edge_threshold=0.0, filter_variance=Settings.filter_variance, reflections=False, transparent_film=True,
-        as_printed=False, outputs=("color", "depth"), profile=False,
+        edge_threshold=0.0, filter_variance=Settings.filter_variance, reflections=False, refraction=False,
+        transparent_film=True, as_printed=False, outputs=("color", "depth"), profile=False,
     )  # fmt: skip
 
 
@@ -82,7 +106,7 @@ def _panorama(scene: Scene, probe: Probe, size: tuple[int, int]) -> Panorama:
     return Panorama(matrix, Octahedral(size[0] - 2), size, near, max(_FARTHEST * away, 2 * near))
 
 
-def _seen(scene: Scene, rows: tuple[int, ...]) -> Scene:
+def _left_out(scene: Scene, rows: tuple[int, ...]) -> Scene:
     """The scene in which what is in these rows of its table only casts its shadow."""
     left_out = {id(scene.table.placed[row]) for row in rows}
 

@@ -7,17 +7,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..frame import EMPTY_DEPTH, Frame
+from ..frame import Frame
 from ..scene import Scene
 from ..scene.camera import Camera
+from .flat_pictures import picture_texels
 from .places import FLATTEST, boxes, glossy
 
 #: What lies this share of its length beside the plane still belongs to a mirror, for rounding.
 _BESIDE = 1e-3
 #: Pixels along an edge of a mirror's picture.
 _MOST_PIXELS = 1024
-#: Each of these has half the pixels of the one before.
-MAPS = 6
 
 
 @dataclass(frozen=True)
@@ -100,22 +99,5 @@ class MirrorPicture:
         self.mirror, self.window, self.size, self._seen = mirror, camera.window, camera.size, seen
 
     def texels(self) -> np.ndarray:
-        """(h, w, 4) float32: below one another the picture, depths with 0 for none, and the picture at a half, a
-        quarter ... of its size."""
-        color, depth = self._seen.color, self._seen.depth
-        depths = np.zeros_like(color)
-        depths[..., 0] = np.where(depth < EMPTY_DEPTH, depth, 0.0)
-        parts = [color, depths]
-        for _ in range(1, MAPS):
-            color = _halved(color)
-            part = np.zeros((len(color), depth.shape[1], 4), np.float32)
-            part[:, : color.shape[1]] = color
-            parts.append(part)
-        return np.concatenate(parts)
-
-
-def _halved(pixels: np.ndarray) -> np.ndarray:
-    """Half as many pixels along both edges, rounded up; the last ones count twice where there is no other."""
-    height, width = (edge + edge % 2 for edge in pixels.shape[:2])
-    padded = np.pad(pixels, ((0, height - len(pixels)), (0, width - pixels.shape[1]), (0, 0)), "edge")
-    return padded.reshape(height // 2, 2, width // 2, 2, -1).mean(axis=(1, 3), dtype=np.float32)
+        """(h, w, 4) float32, as of `picture_texels`."""
+        return picture_texels(self._seen.color, self._seen.depth)

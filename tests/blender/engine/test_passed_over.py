@@ -32,6 +32,7 @@ ONCE_FOR_A_MATERIAL = (
     "Coat IOR",
     "Coat Tint",
     "Sheen Weight",
+    "Transmission Weight",
     "Sheen Roughness",
     "Sheen Tint",
 )

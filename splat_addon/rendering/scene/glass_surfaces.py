@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The surfaces of glass as a tree of boxes, in which shaders find what a ray meets.
+
+The tree is complete: node k has the children 2 k and 2 k + 1, so that it is walked without a stack and without links.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...quaternions import quaternion_axes
+from ...surfels import Surfels
+from .material import reflectance
+from .scene import Placed
+
+#: Triangles or discs in a leaf.
+LEAF = 4
+#: Texels of each, and of a box.
+TEXELS_PER_PRIMITIVE, TEXELS_PER_BOX = 6, 2
+#: Texels in a row of the texture: a whole number of primitives, and of boxes.
+ROW = 1536
+#: More are left out: their texture would take a quarter of a gigabyte.
+MOST_PRIMITIVES = 1 << 21
+
+
+@dataclass(frozen=True, eq=False)
+class GlassSurfaces:
+    """N triangles or discs of glass.
+
+    origin: (3,) float64, what places are relative to. corners: (N, 3, 3) float32 of a triangle, or a disc's middle and
+    half-axes. normals: (N, 3, 3) for shading, a disc's three times. are_discs: (N,) bool. tints: (N, 3) what a crossing
+    keeps of light. iors, roughness: (N,). order: (L,) primitives, leaf by leaf, -1 for none. low, high: (2 L / LEAF, 3)
+    the boxes of the tree; row 0 is nothing. without: how many there was no room for.
+    """
+
+    origin: np.ndarray
+    corners: np.ndarray
+    normals: np.ndarray
+    are_discs: np.ndarray
+    tints: np.ndarray
+    iors: np.ndarray
+    roughness: np.ndarray
+    order: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    without: int
+
+    @classmethod
+    def of(cls, glass: list[tuple[Placed, np.ndarray]]) -> GlassSurfaces:
+        """glass: objects, with which of their surfels or corners are of glass."""
+        parts, count, without, origin = [], 0, 0, _origin_of([placed for placed, _ in glass])
+        for placed, which in glass:
+            found = int(np.count_nonzero(which)) // (1 if isinstance(placed.shape, Surfels) else 3)
+            if count + found > MOST_PRIMITIVES:
+                without += found
+                continue
+            count += found
+            parts.append(_primitives(placed, which, origin))
+        arrays = [np.concatenate(column) for column in zip(*(parts or [_NOTHING]), strict=True)]
+        return cls(origin, *arrays, *_tree(*_boxes(*arrays[:3:2])), without)
+
+    @property
+    def leaves(self) -> int:
+        """Number of leaves, and of the first of them."""
+        return len(self.low) // 2
+
+    def texels(self) -> np.ndarray:
+        """(h, ROW, 4) float32: the boxes, two texels each, and in the rows behind them the primitives of the leaves."""
+        boxes = np.zeros((len(self.low), TEXELS_PER_BOX, 4), np.float32)
+        boxes[:, 0, :3], boxes[:, 1, :3] = self.low, self.high
+        primitives = np.zeros((len(self.order), TEXELS_PER_PRIMITIVE, 4), np.float32)
+        rows = np.flatnonzero(self.order >= 0)
+        of = self.order[rows]
+        primitives[rows, :3, :3], primitives[rows, 3:, :3] = self.corners[of], self.normals[of]
+        primitives[rows, :3, 3] = self.tints[of]
+        primitives[rows, 3, 3], primitives[rows, 4, 3] = self.iors[of], self.roughness[of]
+        primitives[rows, 5, 3] = np.where(self.are_discs[of], 2.0, 1.0)
+        return np.concatenate([_in_rows(boxes), _in_rows(primitives)])
+
+    @property
+    def box_rows(self) -> int:
+        """Rows of the texture that hold boxes."""
+        return _rows(len(self.low) * TEXELS_PER_BOX)
+
+
+def _rows(texels: int) -> int:
+    return -(-texels // ROW)
+
+
+def _in_rows(texels: np.ndarray) -> np.ndarray:
+    flat = texels.reshape(-1, 4)
+    made = np.zeros((_rows(len(flat)) * ROW, 4), np.float32)
+    made[: len(flat)] = flat
+    return made.reshape(-1, ROW, 4)
+
+
+def _origin_of(placed: list[Placed]) -> np.ndarray:
+    if not placed:
+        return np.zeros(3)
+    one = placed[0]
+    middle = one.shape.origin + np.mean(one.shape.local_bounds, axis=0)
+    return one.matrix_world[:3, :3] @ middle + one.matrix_world[:3, 3]
+
+
+_NOTHING = (
+    *(np.zeros((0, 3, 3)) for _ in range(2)), np.zeros(0, bool), np.zeros((0, 3)), *(np.zeros(0) for _ in range(2)),
+)  # fmt: skip
+
+
+def _primitives(placed: Placed, which: np.ndarray, origin: np.ndarray) -> tuple[np.ndarray, ...]:
+    """The arrays of one object."""
+    shape, linear = placed.shape, placed.matrix_world[:3, :3]
+    rows, is_disc = np.flatnonzero(which), isinstance(shape, Surfels)
+    away = linear @ shape.origin + placed.matrix_world[:3, 3] - origin
+    if is_disc:
+        x, y = (
+            axis * shape.scales[rows, k : k + 1] for k, axis in enumerate(quaternion_axes(shape.rotations[rows], 2)[:2])
+        )
+        corners = np.stack([shape.positions[rows] @ linear.T + away, x @ linear.T, y @ linear.T], axis=1)
+        normals = np.repeat(_bent(shape.normals[rows], linear)[:, None], 3, axis=1)
+        slots, colors = shape.materials[rows], shape.colors[rows, :3]
+    else:
+        rows = rows.reshape(-1, 3)
+        corners = shape.positions[rows] @ linear.T + away
+        normals = _bent(shape.normals[rows.ravel()], linear).reshape(-1, 3, 3)
+        slots, colors = shape.materials[rows[:, 0]], shape.colors[rows, :3].mean(axis=1)
+    materials = [placed.materials[min(slot, len(placed.materials) - 1)] for slot in np.unique(slots)]
+    numbers = np.array([(m.finish.tint_power, _ior(m), m.roughness) for m in materials])
+    power, ior, roughness = numbers[np.searchsorted(np.unique(slots), slots)].T
+    if shape.roughness is not None:
+        roughness = shape.roughness[rows if is_disc else rows[:, 0]]
+    tints = np.maximum(colors, 0.0) ** power[:, None]
+    if not is_disc and np.linalg.det(linear) < 0:
+        corners, normals = corners[:, [0, 2, 1]], normals[:, [0, 2, 1]]
+    return corners, normals, np.full(len(corners), is_disc), tints, ior, roughness
+
+
+def _ior(material) -> float:
+    """Never below 1, as shaders know it from the reflectance."""
+    root = reflectance(material.ior) ** 0.5
+    return (1 + root) / (1 - root)
+
+
+def _bent(normals: np.ndarray, linear: np.ndarray) -> np.ndarray:
+    """(n, 3) normals in the world; 0 where the map is flat."""
+    cofactors = np.array([np.cross(linear[:, 1], linear[:, 2]), np.cross(linear[:, 2], linear[:, 0]),
+                          np.cross(linear[:, 0], linear[:, 1])])  # fmt: skip
+    made = normals @ cofactors * (np.sign(np.linalg.det(linear)) or 1.0)
+    return made / np.maximum(np.linalg.norm(made, axis=1, keepdims=True), 1e-30)
+
+
+def _boxes(corners: np.ndarray, are_discs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(N, 3) low and high corners of boxes around the primitives."""
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    discs = corners[are_discs]
+    reach = np.sqrt((discs[:, 1:] ** 2).sum(axis=1))
+    low[are_discs], high[are_discs] = discs[:, 0] - reach, discs[:, 0] + reach
+    return low, high
+
+
+def _tree(low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """order, low and high as in `GlassSurfaces`: halves are parted across the longest side of their middles' box."""
+    leaves = 1
+    while leaves * LEAF < len(low):
+        leaves *= 2
+    order = np.full(leaves * LEAF, -1)
+    order[: len(low)] = np.arange(len(low))
+    # what is not there comes last, wherever it is parted
+    middles = np.concatenate([(low + high) / 2, np.full((1, 3), np.inf)])
+    nodes = 1
+    while nodes < leaves:
+        each = order.reshape(nodes, -1)
+        places = middles[each]
+        is_there = np.isfinite(places)
+        extent = np.where(is_there, places, -np.inf).max(axis=1) - np.where(is_there, places, np.inf).min(axis=1)
+        axis = np.nan_to_num(extent, nan=0.0, neginf=0.0).argmax(axis=1)
+        keys = np.take_along_axis(places, axis[:, None, None], axis=2)[..., 0]
+        order = np.take_along_axis(each, np.argsort(keys, axis=1, kind="stable"), axis=1).ravel()
+        nodes *= 2
+    ends = []
+    for values, nothing, of in ((low, np.inf, np.min), (high, -np.inf, np.max)):
+        level = of(np.concatenate([values, np.full((1, 3), nothing)])[order].reshape(leaves, LEAF, 3), axis=1)
+        levels = [level]
+        while len(level) > 1:
+            level = of(level.reshape(-1, 2, 3), axis=1)
+            levels.append(level)
+        ends.append(np.concatenate([np.full((1, 3), nothing), *levels[::-1]]))
+    return order, *ends
