@@ -185,25 +185,25 @@ class Renderer:
             yield frame
 
     def _planned(
-        self, scene: Scene, camera: Camera, settings: Settings, repeated=1, is_repeatable=False, **options
+        self, scene: Scene, camera: Camera, settings: Settings, repeated=1, is_repeatable=False, whole=None, **options
     ) -> Shared:
-        """The plan of a picture and all that its samples share. repeated: how many samples follow one another. options:
-        of `plan`."""
-        given, scene = scene, self.near_and_far.resolved(scene, camera)
+        """The plan of a picture and all that its samples share. repeated: how many samples follow one another. whole: the
+        scene that lights what is drawn, if that is only a part. options: of `plan`."""
+        whole, scene = whole or scene, self.near_and_far.resolved(scene, camera)
         before = no_history(scene) if is_repeatable else history(scene, self._drawn)
         frame_plan = plan(scene, camera, settings, history=before, **options)
         check_samplers(frame_plan, self.device.max_samplers)
-        seen = self._reflected(scene, camera, settings, frame_plan, is_repeatable)
+        seen = self._reflected(scene, camera, settings, frame_plan, is_repeatable=is_repeatable, whole=whole)
         is_bounced = frame_plan.found.get(bounced_light.missing) == ""
-        light = self.bounced.of(given, settings.bounces) if is_bounced and frame_plan.passes else None
+        light = self.bounced.of(whole, settings.bounces) if is_bounced and frame_plan.passes else None
         return Shared(scene, frame_plan, settings, repeated, before, *seen, light)
 
-    def _reflected(self, scene: Scene, camera: Camera, settings: Settings, frame_plan: FramePlan, is_repeatable: bool):
+    def _reflected(self, scene: Scene, camera: Camera, settings: Settings, frame_plan: FramePlan, **options):
         """What the plan's probes and mirror see, and what is behind its glass, drawn if anything in it has changed;
-        None for what it lacks."""
+        None for what it lacks. options: of `_planned`."""
 
         def draw(seen: Scene, camera: Camera, of: Viewers, plain: Settings) -> Frame:
-            shared = self._planned(seen, camera, plain, is_repeatable=is_repeatable, viewers=of)
+            shared = self._planned(seen, camera, plain, viewers=of, **options)
             return self._frame(shared, camera, None, None)
 
         found = frame_plan.found

@@ -44,7 +44,7 @@ class Probes:
     def pictures(self, scene: Scene, probes: tuple[Probe, ...], settings: Settings, draw: Draw) -> ProbePictures:
         """What the probes see: the same object as long as the scene is."""
         plain, size = _plain(settings), (side_of(probes) + 2,) * 2
-        made_from = probes, plain, contents(scene)
+        made_from = probes, plain, settings.refraction, contents(scene)
         if self._kept is None or self._kept[0] != made_from:
             frames = []
             for probe in probes:
@@ -61,7 +61,7 @@ class Probes:
         """What the mirror shows to a camera: the same object as long as both stay."""
         plain, behind = replace(_plain(settings), supersampling=2), mirrored_camera(mirror, camera)
         view = behind.matrix_world.tobytes(), behind.window, behind.size, behind.near, behind.far
-        made_from = mirror, view, behind.is_orthographic, plain, contents(scene)
+        made_from = mirror, view, behind.is_orthographic, plain, settings.refraction, contents(scene)
         if self._mirrored is None or self._mirrored[0] != made_from:
             seen = draw(self._seen(scene, mirror.left_out, settings), behind, Viewers(behind, (behind,)), plain)
             self._mirrored = made_from, MirrorPicture(mirror, behind, seen)
@@ -69,12 +69,11 @@ class Probes:
 
     def glass(self, scene: Scene, camera: Camera, settings: Settings, draw: Draw) -> GlassPicture:
         """What a camera sees behind glass: the same object as long as both stay."""
-        plain, contents = replace(_plain(settings), supersampling=2), _contents(scene)
-        behind = behind_camera(camera)
-        if self._surfaces is None or self._surfaces[0] != contents:
-            self._surfaces = contents, surfaces_of(scene.table)
+        plain, behind, of_scene = replace(_plain(settings), supersampling=2), behind_camera(camera), contents(scene)
+        if self._surfaces is None or self._surfaces[0] != of_scene:
+            self._surfaces = of_scene, surfaces_of(scene.table)
         view = behind.matrix_world.tobytes(), behind.window, behind.size, behind.near, behind.far
-        made_from = view, behind.is_orthographic, plain, contents
+        made_from = view, behind.is_orthographic, plain, of_scene
         if self._behind is None or self._behind[0] != made_from:
             seen = draw(self._without_glass.of(scene), behind, Viewers(behind, (behind,)), plain)
             self._behind = made_from, GlassPicture(self._surfaces[1], behind, seen)
