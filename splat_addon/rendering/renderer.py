@@ -187,8 +187,8 @@ class Renderer:
     def _planned(
         self, scene: Scene, camera: Camera, settings: Settings, repeated=1, is_repeatable=False, whole=None, **options
     ) -> Shared:
-        """The plan of a picture and all that its samples share. repeated: how many samples follow one another. whole: the
-        scene that lights what is drawn, if that is only a part. options: of `plan`."""
+        """The plan of a picture and all that its samples share. repeated: how many samples follow one another. whole:
+        the scene that lights what is drawn, if that is only a part. options: of `plan`."""
         whole, scene = whole or scene, self.near_and_far.resolved(scene, camera)
         before = no_history(scene) if is_repeatable else history(scene, self._drawn)
         frame_plan = plan(scene, camera, settings, history=before, **options)
