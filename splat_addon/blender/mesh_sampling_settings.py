@@ -57,8 +57,8 @@ _MESH_ITEMS = (
         "POLYGONS",
         "Polygons",
         "Draw the triangles among the splats, with the same depth, light and shadows. The alpha of the base "
-        "colour's image makes holes; meshes that are transparent in another way become surfels, unless their object "
-        "is set to Polygons",
+        "colour's image makes holes; meshes that are transparent in another way, or whose nodes are more than images, "
+        "become surfels, unless their object is set to Polygons",
         0,
     ),
     (

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Forty small materials, each with one family of nodes before Base Color, Roughness or Normal."""
+"""Forty small materials, each with one family of nodes before Base Color, Roughness or Normal, and two that depend on
+the view."""
 
 from __future__ import annotations
 
@@ -115,8 +116,6 @@ PLAIN = {
         "Base Color",
         lambda c: c.add("Wavelength", {0: c.math("MULTIPLY_ADD", _number(c), 80.0, 500.0)}).outputs[0],
     ),
-    "Layer Weight": ("Base Color", lambda c: c.mix(c.add("LayerWeight", {0: 0.4}).outputs["Facing"], _RUST, _SAND)),
-    "Fresnel": ("Roughness", lambda c: c.add("Fresnel", {0: 1.45}).outputs[0]),
     "Mapping, turned": (
         "Base Color",
         lambda c: c.image("color", c.placed("UV", (0.2, 0.1, 0), (0, 0, 0.5), (1.5, 0.8, 1))),
@@ -151,6 +150,17 @@ def _stepped_noise(c: Chain) -> Socket:
     return c.add("TexWhiteNoise", {"Vector": at}).outputs["Color"]
 
 
+def _distorted(c: Chain) -> Socket:
+    at = c.coordinates("UV")
+    share = c.add("VectorMath", {0: c.noise(at, 4.0, output="Color"), "Scale": 0.1}, operation="SCALE").outputs[0]
+    return c.image("color", c.add("VectorMath", {0: at, 1: share}, operation="ADD").outputs[0])
+
+
+def _cracks(c: Chain) -> Socket:
+    edges = c.voronoi(c.coordinates("Object"), 2.0, feature="DISTANCE_TO_EDGE")
+    return c.bump(c.mask(edges, 0.0, 0.15), 0.5, 0.05)
+
+
 #: Likewise; pictures of these are to have 32 dB.
 PROCEDURAL = {
     "Noise": (
@@ -165,5 +175,13 @@ PROCEDURAL = {
     "Checker": ("Base Color", _textured("Checker", "Color", 3.0)),
     "White Noise": ("Base Color", _stepped_noise),
     "Gabor": ("Roughness", _textured("Gabor", "Value", 2.0, gabor_type="3D")),
+    "Noise before an image": ("Base Color", _distorted),
+    "Voronoi, bumped": ("Normal", _cracks),
     "Noise, bumped": ("Normal", lambda c: c.bump(c.noise(c.coordinates("Object"), 3.0, 1.0))),
+}
+
+#: Likewise of what depends on the view, of which surfels show what is seen straight on: without a goal.
+OF_VIEWS = {
+    "Layer Weight": ("Base Color", lambda c: c.mix(c.add("LayerWeight", {0: 0.4}).outputs["Facing"], _RUST, _SAND)),
+    "Fresnel": ("Roughness", lambda c: c.add("Fresnel", {0: 1.45}).outputs[0]),
 }

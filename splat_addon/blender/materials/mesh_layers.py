@@ -13,8 +13,14 @@ from ..geometry.attributes import has_surfels_beside_faces
 from .node_products import ImageSource
 from .texture_images import UnreadableError, linear_pixels
 
-#: Layers that follow from the mesh itself, in object space; no attribute has such a name.
-DERIVED = GENERATED, POSITION, NORMAL, TRUE_NORMAL = "\0generated", "\0position", "\0normal", "\0true normal"
+#: Layers that follow from the mesh itself, places and directions in object space; no attribute has such a name.
+DERIVED = GENERATED, POSITION, NORMAL, TRUE_NORMAL, POINTINESS = (
+    "\0generated",
+    "\0position",
+    "\0normal",
+    "\0true normal",
+    "\0pointiness",
+)
 
 #: data type of an attribute that can be used as a colour -> its property, and its number of components
 ATTRIBUTE_TYPES = {

@@ -19,9 +19,10 @@ from ...sampling import Image, Surface, TriangleMesh
 from ..geometry.reading import read_values
 from ..materials.graphs.reading import REST
 from ..materials.material_surfaces import PLAIN, Unread, material_surface
-from ..materials.mesh_layers import ATTRIBUTE_TYPES, GENERATED, NORMAL, POSITION, TRUE_NORMAL, MeshLayers
+from ..materials.mesh_layers import ATTRIBUTE_TYPES, GENERATED, NORMAL, POINTINESS, POSITION, TRUE_NORMAL, MeshLayers
 from ..materials.slots import slot_materials
 from ..materials.surface_shaders import why_unseen
+from .pointiness import pointiness
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,7 +152,13 @@ def _edges(mesh: bpy.types.Mesh) -> int:
     """A checksum of the vertices of the edges; 0 if every face is a triangle."""
     if len(mesh.loops) == 3 * len(mesh.polygons):
         return 0
-    return zlib.crc32(read_values(mesh.attributes[".edge_verts"].data, "value", 2, len(mesh.edges), np.int32))
+    return zlib.crc32(_edge_vertices(mesh))
+
+
+def _edge_vertices(mesh: bpy.types.Mesh) -> np.ndarray:
+    """(E, 2) int32."""
+    count = len(mesh.edges)
+    return read_values(mesh.attributes[".edge_verts"].data, "value", 2, count, np.int32).reshape(-1, 2)
 
 
 def _corner_vertices(mesh: bpy.types.Mesh) -> np.ndarray:
@@ -261,8 +268,21 @@ def _normals(mesh: bpy.types.Mesh, topology: Topology) -> np.ndarray:
     return _true_normals(mesh, topology) if normals is None else normals.reshape(-1, 3, 3)
 
 
+def _pointiness(mesh: bpy.types.Mesh, topology: Topology) -> np.ndarray:
+    """(T, 3, 3), the number as a grey."""
+    normals = read_values(mesh.vertex_normals, "vector", 3, len(mesh.vertices)).reshape(-1, 3)
+    values = pointiness(_positions(mesh).reshape(-1, 3), _edge_vertices(mesh), normals)
+    return np.repeat(values[topology.at_corners(topology.corner_vertices)][..., None], 3, axis=2)
+
+
 #: layer that follows from the mesh -> its reader
-_DERIVED = {GENERATED: _generated, POSITION: _at_places, NORMAL: _normals, TRUE_NORMAL: _true_normals}
+_DERIVED = {
+    GENERATED: _generated,
+    POSITION: _at_places,
+    NORMAL: _normals,
+    TRUE_NORMAL: _true_normals,
+    POINTINESS: _pointiness,
+}
 
 
 def _uv_reader(mesh: bpy.types.Mesh, topology: Topology):

@@ -66,11 +66,19 @@ def _only_at_corners(surface: Surface) -> Iterator[str]:
 
 
 def needs_surfels(mesh: TriangleMesh) -> bool:
-    """Whether polygons cannot show what it looks like: it is transparent, or its nodes make its colours."""
-    channels = [channel for surface in _used(mesh) for channel in (surface.color, surface.emission) if channel]
-    factors = [factor for channel in channels for factor in channel.factors]
-    has_nodes = any(isinstance(factor, Computed) and not factor.graph.is_constant for factor in factors)
-    return has_nodes or is_transparent(mesh)
+    """Whether polygons cannot show what it looks like: it is transparent, or images or nodes that they do not look up
+    make its colours or normals, or nodes its roughness or metal."""
+    return is_transparent(mesh) or any(_lacks_on_polygons(surface) for surface in _used(mesh))
+
+
+def _lacks_on_polygons(surface: Surface) -> bool:
+    if surface.normal_map is not None and normal_map_texture(surface) is None:
+        return True
+    colors = [surface.emission] if surface.color_texture is not None else [surface.color, surface.emission]
+    seen = [factor for channel in colors if channel for factor in channel.factors]
+    rest = [factor for channel in (surface.roughness, surface.metallic) if channel for factor in channel.factors]
+    has_nodes = any(isinstance(factor, Computed) and not factor.graph.is_constant for factor in (*seen, *rest))
+    return has_nodes or any(isinstance(factor, Texture) for factor in seen)
 
 
 def is_transparent(mesh: TriangleMesh) -> bool:

@@ -420,12 +420,12 @@ GERMAN = {
     ),
     (
         "Draw the triangles among the splats, with the same depth, light and shadows. The alpha of the base "
-        "colour's image makes holes; meshes that are transparent in another way become surfels, unless their object "
-        "is set to Polygons"
+        "colour's image makes holes; meshes that are transparent in another way, or whose nodes are more than images, "
+        "become surfels, unless their object is set to Polygons"
     ): (
         "Die Dreiecke zwischen den Splats zeichnen, mit derselben Tiefe, demselben Licht und denselben Schatten. "
-        "Das Alpha des Bildes der Grundfarbe macht Löcher; auf andere Art transparente Meshes werden zu Surfels, "
-        "außer wenn ihr Objekt auf Polygone eingestellt ist"
+        "Das Alpha des Bildes der Grundfarbe macht Löcher; auf andere Art transparente Meshes, und solche, deren "
+        "Knoten mehr als Bilder sind, werden zu Surfels, außer wenn ihr Objekt auf Polygone eingestellt ist"
     ),
     "Only for Cycles; choose another type": "Nur für Cycles; einen anderen Typ wählen",
     "Drop": "Entfernen",

@@ -405,6 +405,7 @@ def test_a_normal_map_that_polygons_do_not_show_is_named(look, picture, said):
     bpy.ops.mesh.primitive_cube_add()
     bpy.context.object.data.materials.append(principled())
     add_normal_map(bpy.context.object.data.materials[0], space="OBJECT")
+    bpy.context.object.surfel_splatting.render_as = "POLYGONS"
     picture()
     assert "Cube has a normal map that is not one image in tangent space" in said()
 
@@ -415,6 +416,7 @@ def test_images_that_polygons_show_at_corners_alone_are_named(channel, look, pic
     bpy.ops.mesh.primitive_cube_add()
     material = principled(Emission_Strength=1.0)
     bpy.context.object.data.materials.append(material)
+    bpy.context.object.surfel_splatting.render_as = "POLYGONS"
     node = material.node_tree.nodes.new("ShaderNodeTexImage")
     node.image = bpy.data.images.new("spots", 4, 4)
     material.node_tree.links.new(node.outputs["Color"], material.node_tree.nodes["Principled BSDF"].inputs[channel])

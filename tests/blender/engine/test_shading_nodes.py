@@ -67,3 +67,29 @@ def test_objects_that_share_a_mesh_have_their_own_object_colour(squares, picture
     first.color, second.color = (1, 0, 0, 1), (0, 1, 0, 1)
     pixels = picture()[..., :3]
     assert np.allclose(pixels[8, 8], (1, 0, 0), atol=1e-3) and np.allclose(pixels[8, 24], (0, 1, 0), atol=1e-3)
+
+
+def test_pointiness_is_that_of_cycles(scene, add_camera, picture, switch_to_cycles):
+    """A box with round edges glows where it stands out."""
+    bpy.ops.mesh.primitive_cube_add()
+    box = bpy.context.object
+    bevel = box.modifiers.new("Bevel", "BEVEL")
+    bevel.width, bevel.segments = 0.6, 3
+    material = bpy.data.materials.new("edges")
+    if bpy.app.version < (5, 0, 0):
+        material.use_nodes = True
+    tree = material.node_tree
+    edges, ranged, light = node(tree, "NewGeometry"), node(tree, "MapRange"), node(tree, "Emission")
+    ranged.inputs["From Min"].default_value, ranged.inputs["From Max"].default_value = 0.45, 0.65
+    tree.links.new(edges.outputs["Pointiness"], ranged.inputs["Value"])
+    tree.links.new(ranged.outputs[0], light.inputs["Color"])
+    tree.links.new(light.outputs[0], tree.get_output_node("ALL").inputs["Surface"])
+    box.data.materials.append(material)
+    add_camera(location=(0, 0, 5), type="ORTHO", ortho_scale=1.8)
+    scene.render.resolution_x = scene.render.resolution_y = 32
+    scene.surfel_splatting.shading, scene.world = "principled", None
+    ours = picture()
+    switch_to_cycles(samples=16)
+    truth = picture()
+    inside = (ours[..., 3] == 1) & (truth[..., 3] == 1)
+    assert truth[inside, 0].std() > 0.02 and np.abs(ours - truth)[inside, 0].max() < 0.01

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from ....shading_nodes import ATTRIBUTE, ATTRIBUTE_ALPHA, BUMP, UV
-from ..mesh_layers import GENERATED, NORMAL, POSITION, TRUE_NORMAL
+from ..mesh_layers import GENERATED, NORMAL, POINTINESS, POSITION, TRUE_NORMAL
 from ..node_products import ImageSource
 from ..node_walks import Node, Socket, linked
 from ..texture_images import UnreadableError
@@ -76,6 +76,8 @@ def _geometry(tree: GraphReading, node: Node, output: str) -> Value:
     if output == "Backfacing":
         tree.seen_straight_on(node)
         return Value((0.0,))
+    if output == "Pointiness" and tree.layers.mesh is not None:
+        return tree.add("component", derived(tree, POINTINESS), settings=(0,))
     raise unreadable(node, f"that gives {output}")
 
 
