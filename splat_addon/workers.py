@@ -7,6 +7,7 @@ import os
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 
 #: More threads would wait for the interpreter between operations, and hold more memory.
 _MOST = 4
@@ -38,3 +39,12 @@ def in_order(jobs: Iterable[Callable]) -> Iterator:
 def run_all(jobs: Iterable[Callable[[], None]]):
     """Run independent jobs that write their results where they belong."""
     deque(in_order(jobs), maxlen=0)
+
+
+def in_portions(
+    count: int, size: int, job: Callable[[slice], None], report: Callable[[float], None] = lambda share: None
+):
+    """Run a job for each `size` of `count` rows. report: called with the finished share."""
+    portions = [slice(start, min(start + size, count)) for start in range(0, count, size)]
+    for portion, _ in zip(portions, in_order(partial(job, portion) for portion in portions), strict=True):
+        report(portion.stop / count)

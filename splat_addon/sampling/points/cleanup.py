@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..mesh.cleaning import MAX_COORDINATE
-from .normals import thicknesses
+from .normals import local_planes
 
 #: A point is isolated if its neighbours are this many times as far from it as they are from theirs. In scans of even
 #: density the ratio stays below 2; at a step to a quarter of the density it is 2.
@@ -27,6 +27,10 @@ _THICK = 0.1
 #: A gap separates a group of at least this many points from its next neighbour, which is this many times as far as the
 #: one before. One of 4,000 random points on a surface has such a gap.
 _FEWEST_IN_GROUP, _GAP = 4, 4.0
+
+#: A point lies off the surface if it is this many standard deviations of noise away from the plane of its neighbours,
+#: and this many spacings, which the tip of a clean scan is not.
+_OFF_NOISE, _OFF_SPACINGS = 3.3, 1.2
 
 
 def finite_points(positions: np.ndarray) -> np.ndarray:
@@ -63,5 +67,15 @@ def isolated_points(positions: np.ndarray, neighbours: np.ndarray, distances: np
     sparse = np.flatnonzero((mean > SPARSE_RATIO * typical) & ~isolated)
     own = distances[sparse]
     has_gap = (own[:, _FEWEST_IN_GROUP - 1 :] > _GAP * own[:, _FEWEST_IN_GROUP - 2 : -1]).any(axis=1)
-    isolated[sparse] = has_gap | (thicknesses(positions, neighbours, sparse) > _THICK)
+    isolated[sparse] = has_gap | (local_planes(positions, neighbours, sparse).thicknesses() > _THICK)
     return isolated | (isolated[neighbours].mean(axis=1) > 0.5)
+
+
+def off_surface(heights: np.ndarray, noise: np.ndarray, spacing: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
+    """(N,) bool: points beside a surface that is smooth there.
+
+    heights: (N,) above the plane of the neighbours. noise: (N,) standard deviation. spacing: (N,) between points.
+    neighbours: (N, k) indices, nearest first. The spacing is that of the nearest neighbour, because a stray's own is
+    large.
+    """
+    return heights > np.maximum(_OFF_NOISE * noise, _OFF_SPACINGS * spacing[neighbours[:, 0]])

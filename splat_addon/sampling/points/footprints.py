@@ -11,6 +11,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from ..workers import in_portions
 from .creases import Creases
 from .normals import CHUNK, tangent_frames
 
@@ -64,8 +65,8 @@ def tangent_ellipses(
     least_alike = np.full(count, _SAME_SHEET_COSINE)
     if creases is not None:
         least_alike[creases.points] = creases.cosine
-    for start in range(0, count, CHUNK):
-        part = slice(start, min(start + CHUNK, count))
+
+    def job(part: slice):
         near, own = np.ascontiguousarray(neighbours[part].T), normal_columns[:, part]
         frame = (*tangent_frames(normals[part]), normals[part])
         away = [column[near] - column[part] for column in columns]
@@ -83,7 +84,8 @@ def tangent_ellipses(
         angle, ellipses = _ellipses(reach, splat_size)
         half_axes[part] = ellipses * spacing[:, None]
         axes[part] = frame[0] * np.cos(angle)[:, None] + frame[1] * np.sin(angle)[:, None]
-        report(part.stop / count)
+
+    in_portions(count, CHUNK, job, report)
     return axes, half_axes, known
 
 

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,11 +16,12 @@ from ...vectors import unit
 from ..options import DEFAULT_SPLAT_SIZE, check_crease_angle
 from ..progress import Progress, stage
 from .cells import spatial_order
-from .cleanup import finite_points, first_of_each, isolated_points
+from .cleanup import finite_points, first_of_each, isolated_points, off_surface
 from .creases import CREASE_NEIGHBOURS, clip_fields, find_creases
 from .footprints import tangent_ellipses
 from .neighbours import nearest_neighbours
-from .normals import plane_normals, tangent_frames
+from .noise import NOISY, WIDER, noise_levels, of_surroundings, smoothed_normals, spacings
+from .normals import local_planes, tangent_frames
 from .orientation import consistent_signs, facing_outward, facing_scanners, facing_viewpoint
 from .report import BRIGHT_COLOR, PointsReport
 
@@ -126,11 +127,12 @@ def _estimate(given, neighbours, splat_size, isolated, viewpoint, crease_angle, 
     alone = np.zeros(len(positions), bool)
     nearest, distances = np.empty((len(positions), 0), np.int32), np.empty((len(positions), 0), np.float32)
     if len(positions) > _FEWEST_NEIGHBOURS:
-        wanted = neighbours if crease_angle is None else max(neighbours, CREASE_NEIGHBOURS)
+        wanted = max(math.ceil(WIDER * neighbours), 0 if crease_angle is None else CREASE_NEIGHBOURS)
         told = stage(progress, *_STAGES["neighbours"])
         nearest, distances = nearest_neighbours(positions, min(wanted, len(positions) - 1), told)
         alone = isolated_points(positions, nearest[:, :neighbours], distances[:, :neighbours])
-    normals, parts = _normals(given, positions, missing_normals, nearest[:, :neighbours], viewpoint, progress)
+    found = _normals(given, positions, missing_normals, nearest, distances, neighbours, viewpoint, progress)
+    normals, alone = found.normals, alone | found.off
     planes, creases = normals, None
     if crease_angle is not None and nearest.shape[1]:
         told = stage(progress, *_STAGES["creases"])
@@ -138,8 +140,9 @@ def _estimate(given, neighbours, splat_size, isolated, viewpoint, crease_angle, 
         planes = normals.copy()
         planes[creases.points] = creases.normals
         normals = np.where(missing_normals[:, None], planes, normals)
+    reach = neighbours if creases is None else nearest.shape[1]
     axes, scales = _ellipses(
-        given, positions, planes, missing_radii, nearest, distances, alone, splat_size, creases, progress
+        given, positions, planes, missing_radii, nearest[:, :reach], distances, alone, splat_size, creases, progress
     )
     limited = _limit(scales, nearest, missing_radii, alone)
     colors, default_colors = _colors(given, len(positions))
@@ -161,7 +164,9 @@ def _estimate(given, neighbours, splat_size, isolated, viewpoint, crease_angle, 
         limited=int(limited[keep].sum()),
         default_colors=int(default_colors[keep].sum()),
         bright_colors=int((colors[keep, :3].max(axis=1) > BRIGHT_COLOR).sum()),
-        parts=parts,
+        parts=found.parts,
+        noisy=int(found.is_noisy[keep].sum()),
+        untrusted=int(found.is_untrusted[keep].sum()),
         creases=_number_clipped(fields, keep),
     )  # fmt: skip
 
@@ -171,11 +176,30 @@ def _number_clipped(fields: dict[str, np.ndarray], keep: np.ndarray) -> int:
     return int(np.count_nonzero(sum(fields[name][keep, 1] > 0 for name in CLIP_FIELDS if name in fields)))
 
 
-def _normals(given, positions, missing, nearest, viewpoint, progress) -> tuple[np.ndarray, int]:
-    """(N, 3) float64 unit normals, and the number of connected parts that were oriented."""
+@dataclass(eq=False)
+class _Normals:
+    """normals: (N, 3) float64 unit. parts: number of connected parts that were oriented. Which points lie off the
+    surface, are noisy, and have normals that are not to be trusted: (N,) bool."""
+
+    normals: np.ndarray
+    parts: int
+    off: np.ndarray
+    is_noisy: np.ndarray
+    is_untrusted: np.ndarray
+
+
+def _normals(given, positions, missing, nearest, distances, neighbours, viewpoint, progress) -> _Normals:
+    none = np.zeros(len(positions), bool)
     if not missing.any():
-        return _unit_of_any_length(given["normals"]), 0
-    normals = plane_normals(positions, nearest, stage(progress, *_STAGES["normals"]))
+        return _Normals(_unit_of_any_length(given["normals"]), 0, none, none, none)
+    own, told = nearest[:, :neighbours], stage(progress, *_STAGES["normals"])
+    planes = local_planes(positions, own, report=lambda share: told(0.4 * share))
+    noise, spacing = noise_levels(planes.roughness(), own), spacings(distances)
+    normals, is_noisy, is_untrusted = planes.normals, noise > NOISY * spacing, none.copy()
+    rows = np.flatnonzero(is_noisy)
+    if len(rows):
+        wider = positions, normals, nearest, rows, lambda share: told(0.4 + 0.6 * share)
+        normals[rows], _, is_untrusted[rows] = smoothed_normals(*wider)
     signs, part = consistent_signs(positions, normals, nearest, stage(progress, *_STAGES["sides"]))
     normals *= signs[:, None]
     if viewpoint is None:
@@ -185,10 +209,14 @@ def _normals(given, positions, missing, nearest, viewpoint, progress) -> tuple[n
         normals *= facing_viewpoint(positions, normals, part, np.asarray(viewpoint, np.float64) - centre)[:, None]
     if "scanners" in given:
         normals *= facing_scanners(positions, normals, given["scanners"] - _middle(given["positions"]))[:, None]
+    is_untrusted &= missing
+    rows = np.flatnonzero(is_untrusted)
+    normals[rows] = of_surroundings(normals, nearest, rows)
     if not missing.all():
-        own = np.flatnonzero(~missing)
-        normals[own] = _unit_of_any_length(given["normals"][own])
-    return normals, int(part.max()) + 1
+        kept = np.flatnonzero(~missing)
+        normals[kept] = _unit_of_any_length(given["normals"][kept])
+    off = missing & off_surface(planes.heights(), noise, spacing, nearest)
+    return _Normals(normals, int(part.max()) + 1, off, is_noisy & missing, is_untrusted)
 
 
 def _ellipses(

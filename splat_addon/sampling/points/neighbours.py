@@ -9,9 +9,11 @@ dense regions finish with small cells and sparse ones with large cells.
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
+from ..workers import in_order
 from .cells import Cells, fine_cell_size
 
 #: Distances computed per batch, few enough for temporaries to stay in the processor's cache.
@@ -67,8 +69,9 @@ def _search(
     # Points in the last cells may be far from others in the same cell.
     queries = np.flatnonzero((candidates[cells.cell_of_query] >= worth) & ~cells.is_far)
     queries = queries[np.argsort(candidates[cells.cell_of_query[queries]], kind="stable")]
-    found_so_far = 0
-    for part in _blocks(candidates[cells.cell_of_query[queries]]):
+
+    def look(part: slice) -> int:
+        """The number of queries whose neighbours are certain; parts write to rows of their own."""
         of = queries[part]
         found, square = _nearest_in_block(cells, of, count)
         has_all = candidates[cells.cell_of_query[of]] == len(cells.order)
@@ -77,7 +80,12 @@ def _search(
         neighbours[rows] = found[good]
         distances[rows] = np.sqrt(square[good], dtype=np.float64) * cells.size
         certain[of] = good
-        found_so_far += int(np.count_nonzero(good))
+        return int(np.count_nonzero(good))
+
+    found_so_far = 0
+    parts = _blocks(candidates[cells.cell_of_query[queries]])
+    for found in in_order(partial(look, part) for part in parts):
+        found_so_far += found
         report(found_so_far)
     return certain
 

@@ -7,61 +7,92 @@ Hoppe et al. 1992, section 3.2. The sign is undetermined; `orientation` chooses 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
+from ..workers import in_portions
+
 #: Points per batch, few enough for temporaries to stay in the processor's cache.
 CHUNK = 8192
+
+#: Entries of a symmetric matrix in the order of `least_directions`.
+PAIRS = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
 
 #: If the sine of the angle between rows of the shifted matrix is below this, its kernel is found by an iterative
 #: solver.
 _DOUBTFUL = 1e-6
 
 
-def plane_normals(
-    positions: np.ndarray, neighbours: np.ndarray, report: Callable[[float], None] = lambda share: None
-) -> np.ndarray:
-    """(N, 3) float64 unit normals of the planes that fit each point and its neighbours best, in either direction.
+@dataclass(frozen=True, eq=False)
+class LocalPlanes:
+    """The planes that fit N points and their neighbours best.
 
-    positions: (N, 3) float64. neighbours: (n, k) indices of the first n points' neighbours; n may be below N.
-    report: called with the finished share.
-    Collinear neighbours have no unique plane; any direction perpendicular to the line is returned.
+    normals: (N, 3) float64 unit, in either direction. middles: (3, N) float64 mean of the members, relative to the
+    point. moments: (6, N) float64 covariances xx, yy, zz, yz, xz, xy of the members. variances: (N,) that across the
+    plane. members: their number.
     """
-    normals = np.empty((len(neighbours), 3))
-    columns = np.ascontiguousarray(positions.T)
-    for start in range(0, len(neighbours), CHUNK):
-        part = slice(start, min(start + CHUNK, len(neighbours)))
-        normals[part] = least_directions(_covariances(columns, neighbours[part], part))
-        report(part.stop / len(neighbours))
-    return normals
+
+    normals: np.ndarray
+    middles: np.ndarray
+    moments: np.ndarray
+    variances: np.ndarray
+    members: int
+
+    def roughness(self) -> np.ndarray:
+        """(N,) root mean square distance of the members from the plane, per degree of freedom."""
+        return np.sqrt(self.variances * (self.members / max(self.members - 3, 1)))
+
+    def thicknesses(self) -> np.ndarray:
+        """(N,) share of the members' variance that is across the plane: 0 to 1/3."""
+        whole = self.moments[:3].sum(axis=0)
+        return self.variances / np.where(whole > 0, whole, 1)
+
+    def heights(self) -> np.ndarray:
+        """(N,) distance of each point from the plane through the mean of its neighbours."""
+        off = np.abs(np.einsum("nc,cn->n", self.normals, self.middles))
+        return off * (self.members / (self.members - 1))
 
 
-def thicknesses(positions: np.ndarray, neighbours: np.ndarray, rows: np.ndarray) -> np.ndarray:
-    """(n,) share of the variance of a point and its neighbours that is across their best plane: 0 to 1/3.
-
-    positions: (N, 3) float64. neighbours: (N, k) indices. rows: (n,) the points.
+def local_planes(
+    positions: np.ndarray,
+    neighbours: np.ndarray,
+    rows: np.ndarray | None = None,
+    report: Callable[[float], None] = lambda share: None,
+) -> LocalPlanes:
+    """positions: (N, 3) float64. neighbours: (n, k) indices of the first n points' neighbours; n may be below N.
+    rows: the points whose planes are found; None: the first n. report: called with the finished share.
+    Collinear neighbours have no unique plane; any one through the line is returned.
     """
-    columns, shares = np.ascontiguousarray(positions.T), np.empty(len(rows))
-    for start in range(0, len(rows), CHUNK):
-        part = rows[start : start + CHUNK]
-        moments = _covariances(columns, neighbours[part], part)
-        x, y, z = least_directions(moments).T
-        shares[start : start + CHUNK] = sum(moments * (x * x, y * y, z * z, 2 * y * z, 2 * x * z, 2 * x * y))
-    return shares
+    count = len(neighbours) if rows is None else len(rows)
+    normals, middles, moments = np.empty((count, 3)), np.empty((3, count)), np.empty((6, count))
+    variances, columns = np.empty(count), np.ascontiguousarray(positions.T)
+
+    def job(part: slice):
+        own = part if rows is None else rows[part]
+        middles[:, part], moments[:, part] = _moments(columns, neighbours[own], own)
+        normals[part], variances[part] = least_planes(moments[:, part])
+
+    in_portions(count, CHUNK, job, report)
+    return LocalPlanes(normals, middles, moments, variances, neighbours.shape[1] + 1)
 
 
-def _covariances(columns: np.ndarray, neighbours: np.ndarray, part: slice | np.ndarray) -> np.ndarray:
-    """(6, n) covariances xx, yy, zz, yz, xz, xy of each point with its neighbours, scaled to a trace of about 1."""
+def least_planes(moments: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(n, 3) unit normals of the planes that fit (6, n) covariances best, and (n,) the variances across them."""
+    whole = moments[:3].sum(axis=0)
+    normals = least_directions(moments / np.where(whole > 0, whole, 1))
+    x, y, z = normals.T
+    across = sum(moments * (x * x, y * y, z * z, 2 * y * z, 2 * x * z, 2 * x * y))
+    return normals, np.maximum(across, 0)
+
+
+def _moments(columns: np.ndarray, neighbours: np.ndarray, part: slice | np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(3, n) means and (6, n) covariances xx, yy, zz, yz, xz, xy of each point with its neighbours, relative to it."""
     away = [column[neighbours] - column[part, None] for column in columns]
     members = neighbours.shape[1] + 1
-    means = [a.sum(axis=1) / members for a in away]
-
-    def moment(i, j):
-        return np.einsum("nk,nk->n", away[i], away[j]) / members - means[i] * means[j]
-
-    moments = np.stack([moment(*pair) for pair in ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))])
-    trace = moments[:3].sum(axis=0)
-    return moments / np.where(trace > 0, trace, 1)
+    means = np.stack([a.sum(axis=1) for a in away]) / members
+    moments = [np.einsum("nk,nk->n", away[i], away[j]) / members - means[i] * means[j] for i, j in PAIRS]
+    return means, np.stack(moments)
 
 
 def least_directions(moments: np.ndarray) -> np.ndarray:

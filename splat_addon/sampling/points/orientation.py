@@ -49,18 +49,19 @@ def consistent_signs(
 
 
 def facing_outward(positions: np.ndarray, normals: np.ndarray, part: np.ndarray) -> np.ndarray:
-    """(N,) int8 signs, constant per part, so that the part's normals on the whole point away from its middle.
+    """(N,) int8 signs, constant per part, so that the part's normals on the whole point away from its middle, or up.
 
-    For evenly spread points of a closed surface, the sum of (p - middle) . n is proportional to its volume. On a plane
-    it is 0 and decides nothing; there a part's mean normal is made to point up, or failing that along y or x.
+    The mean of (p - middle) . n over the mean length of p - middle is 1 for a sphere and near 0 for a sheet, such as
+    terrain, of which valleys would decide; the mean of n is 0 for closed surfaces. The stronger one decides: sheets
+    that do not stand upright face up. A wall gives neither, and its mean normal is made to point along y or x.
     """
     sizes = np.bincount(part)
     middles = np.stack([np.bincount(part, column) / sizes for column in positions.T], axis=1)
     away = positions - middles[part]
-    votes = np.bincount(part, np.einsum("ij,ij->i", away, normals))
     scale = np.bincount(part, np.linalg.norm(away, axis=1))
-    up = np.bincount(part, normals @ (1e-2, 1e-1, 1.0))
-    votes = np.where(np.abs(votes) > 1e-6 * scale, votes, up)
+    outward = np.bincount(part, np.einsum("ij,ij->i", away, normals)) / np.where(scale > 0, scale, 1)
+    up = np.bincount(part, normals @ (1e-2, 1e-1, 1.0)) / sizes
+    votes = np.where((np.abs(outward) > 1e-6) & (np.abs(outward) > np.abs(up)), outward, up)
     return np.where(votes[part] < 0, -1, 1).astype(np.int8)
 
 

@@ -11,13 +11,10 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from .normals import least_directions, tangent_frames
+from .normals import PAIRS, least_directions, tangent_frames
 
 #: Rounds of assigning members to planes; most settle after two.
 _ROUNDS = 4
-
-#: Entries of a symmetric matrix in the order of `least_directions`.
-_PAIRS = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
 
 #: Keeps the equations of a quadric solvable if the members do not determine it, in units of the neighbourhood.
 _RIDGE = 1e-9
@@ -81,6 +78,6 @@ def _plane(places: np.ndarray, is_member: np.ndarray) -> tuple[np.ndarray, np.nd
     count = is_member.sum(axis=0)
     centre = (places * is_member).sum(axis=1) / np.maximum(count, 1)
     away = (places - centre[:, None]) * is_member
-    moments = np.stack([(away[i] * away[j]).sum(axis=0) for i, j in _PAIRS])
+    moments = np.stack([(away[i] * away[j]).sum(axis=0) for i, j in PAIRS])
     trace = moments[:3].sum(axis=0)
     return centre, least_directions(moments / np.where(trace > 0, trace, 1)).T, count

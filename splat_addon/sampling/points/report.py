@@ -17,6 +17,8 @@ class PointsReport:
     non_finite, duplicates: left out.
     isolated: found, and left out unless `kept_isolated`.
     estimated_normals, estimated_radii, default_colors: surfels whose own value was missing or unusable.
+    noisy: surfels whose estimated normal is from a wider neighbourhood.
+    untrusted: those of them that lie on no surface, and have the direction of their surroundings.
     limited: surfels whose estimated radius reached across a gap, and was reduced.
     bright_colors: surfels whose colour is far above white.
     parts: connected parts, each oriented as a whole; 0 if no normal was estimated.
@@ -33,6 +35,8 @@ class PointsReport:
     estimated_normals: int = 0
     estimated_radii: int = 0
     default_colors: int = 0
+    noisy: int = 0
+    untrusted: int = 0
     limited: int = 0
     bright_colors: int = 0
     parts: int = 0
@@ -55,6 +59,8 @@ class PointsReport:
             f"normals of {self.estimated_normals:,} points from their neighbours, in {self.parts:,} connected parts": (
                 self.estimated_normals
             ),
+            f"of these, for noise, those of {self.noisy:,} points from one and a half times as many": self.noisy,
+            f"directions of {self.untrusted:,} points that lie on no surface from their surroundings": self.untrusted,
             f"radii of {self.estimated_radii:,} points from their neighbours": self.estimated_radii,
             f"the size of {self.limited:,} points beside gaps from that of their neighbours": self.limited,
             f"edges at which {self.creases:,} points end, where planes through their neighbours meet": self.creases,

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Normals of noisy points, and of points that lie on no surface, from wider neighbourhoods than a clean scan needs.
+
+A point and its neighbours are fitted together with the neighbours of these: the moments of all these neighbourhoods are
+added. Normals are then averaged with those of neighbours that are alike, which leaves creases sharp. How noisy a scan
+is around a point tells the smoothest plane nearby: a crease roughens those that it runs through, noise all of them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from ...vectors import unit
+from ..workers import in_portions
+from .normals import CHUNK, PAIRS, least_planes, local_planes
+
+#: Neighbours of noisy points, as a multiple of those of others.
+WIDER = 1.5
+
+#: The least roughness of this many planes is this many times below their mean, with noise alone.
+_AROUND, _MEAN_OVER_LEAST = 16, 1.5
+
+#: Standard deviation of noise, in spacings, from which normals are taken from wider neighbourhoods.
+NOISY = 0.15
+
+#: A normal is not to be trusted if more than this share of the variance around all neighbours is across their planes:
+#: it is 0.03 to 0.05 with noise of half the spacing, and 0.08 to 0.17 for leaves.
+_THICK = 0.06
+
+#: Radians by which normals differ that are averaged with a weight of 0.6.
+_ALIKE = 0.25
+
+#: Rounds in which untrusted normals take the mean direction around them.
+_ROUNDS = 2
+
+
+def spacings(distances: np.ndarray) -> np.ndarray:
+    """(N,) edge of a square with the mean area per point, from (N, k) distances of the neighbours, nearest first."""
+    members = distances.shape[1] + 1
+    return distances[:, -1] * math.sqrt(math.pi / members)
+
+
+def noise_levels(roughness: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
+    """(N,) standard deviation of noise across the surface, from the (N,) roughness of planes."""
+    return _MEAN_OVER_LEAST * least_around(roughness, neighbours[:, :_AROUND])
+
+
+def least_around(values: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
+    """(N,) the least value of each point and its neighbours."""
+    least = values.copy()
+
+    def job(part: slice):
+        np.minimum(values[part], values[neighbours[part]].min(axis=1), out=least[part])
+
+    in_portions(len(values), CHUNK, job)
+    return least
+
+
+def smoothed_normals(
+    positions: np.ndarray,
+    normals: np.ndarray,
+    neighbours: np.ndarray,
+    rows: np.ndarray,
+    report: Callable[[float], None] = lambda share: None,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Normals of the noisy among N points.
+
+    positions, normals: (N, 3) float64. neighbours: (N, k) indices, `WIDER` than those behind the normals. rows: (n,)
+    ascending, the noisy points. report: called with the finished share.
+    Returns (n, 3) unit normals in either direction, (n, 3) a point on each one's plane, relative to the noisy point,
+    and (n,) bool, which of the normals are not to be trusted.
+    """
+    is_needed = np.zeros(len(positions), bool)
+    is_needed[rows] = is_needed[neighbours[rows]] = True
+    needed = np.flatnonzero(is_needed)
+    place = np.cumsum(is_needed, dtype=np.int32) - 1
+    planes = local_planes(positions, neighbours, needed, lambda share: report(0.4 * share))
+    middles = positions[needed].T + planes.middles
+    thick = np.zeros(len(positions))
+    thick[needed] = planes.thicknesses()
+    made, heights, is_thick = np.empty((len(rows), 3)), np.empty((len(rows), 3)), np.empty(len(rows), bool)
+
+    def widened(part: slice):
+        own = rows[part]
+        near = np.concatenate([neighbours[own], own[:, None]], axis=1)
+        at = place[near]
+        mean, moments = _joined_moments(middles, planes.moments, at)
+        made[part], _ = least_planes(moments)
+        heights[part] = (mean - positions[own].T).T
+        is_thick[part] = thick[near].min(axis=1) > _THICK
+
+    in_portions(len(rows), CHUNK // 4, widened, lambda share: report(0.4 + 0.4 * share))
+    wide = normals.copy()
+    wide[rows] = made
+    columns = np.ascontiguousarray(wide.T, np.float32)
+
+    def averaged(part: slice):
+        own = rows[part]
+        near = [column[neighbours[own]] for column in columns]
+        cosine = sum(n * column[own, None] for n, column in zip(near, columns, strict=True))
+        weight = np.sign(cosine) * np.exp((np.abs(cosine) - 1) / np.float32(_ALIKE**2))
+        made[part] = unit(wide[own] + np.stack([(weight * n).sum(axis=1) for n in near], axis=1))
+
+    in_portions(len(rows), CHUNK, averaged, lambda share: report(0.8 + 0.2 * share))
+    return made, heights, is_thick
+
+
+def _joined_moments(middles: np.ndarray, moments: np.ndarray, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(3, n) mean and (6, n) covariances of neighbourhoods taken together. middles: (3, M), moments: (6, M) of each;
+    at: (n, m) which of them, the last one's middle near the others'."""
+    members, centre = at.shape[1], middles[:, at[:, -1]]
+    away = [column[at] - c[:, None] for column, c in zip(middles, centre, strict=True)]
+    mean = np.stack([a.sum(axis=1) for a in away]) / members
+    between = np.stack([np.einsum("nk,nk->n", away[i], away[j]) / members - mean[i] * mean[j] for i, j in PAIRS])
+    within = np.stack([row[at].sum(axis=1) for row in moments]) / members
+    return centre + mean, between + within
+
+
+def of_surroundings(normals: np.ndarray, neighbours: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """(n, 3) mean directions around some points, whose own normals are not to be trusted, so that they are lit as their
+    surroundings. normals: (N, 3) unit, on their sides."""
+    made = normals.copy()
+    for _ in range(_ROUNDS):
+        means = made[neighbours[rows]].sum(axis=1) + made[rows]
+        length = np.linalg.norm(means, axis=1, keepdims=True)
+        made[rows] = np.where(length > 0.1, means / np.maximum(length, 1e-300), made[rows])
+    return made[rows]
