@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..workers import in_portions
+from ...workers import in_portions
 from .creases import Creases
 from .normals import CHUNK, tangent_frames
 

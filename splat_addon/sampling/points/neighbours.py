@@ -13,7 +13,7 @@ from functools import partial
 
 import numpy as np
 
-from ..workers import in_order
+from ...workers import in_order
 from .cells import Cells, fine_cell_size
 
 #: Distances computed per batch, few enough for temporaries to stay in the processor's cache.

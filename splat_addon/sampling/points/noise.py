@@ -14,7 +14,7 @@ from collections.abc import Callable
 import numpy as np
 
 from ...vectors import unit
-from ..workers import in_portions
+from ...workers import in_portions
 from .normals import CHUNK, PAIRS, least_planes, local_planes
 
 #: Neighbours of noisy points, as a multiple of those of others.

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..workers import in_portions
+from ...workers import in_portions
 
 #: Points per batch, few enough for temporaries to stay in the processor's cache.
 CHUNK = 8192
