@@ -24,7 +24,7 @@ from ..materials.surface_shaders import Part, Shader
 from ..materials.texture_images import UnreadableError, fingerprint, linear_pixels, odd_pixels_sentence, settings_of
 from . import passed_over
 from .shading import BLACK, color_times_strength, finite_radiance
-from .world_shaders import backgrounds
+from .world_shaders import Backgrounds, backgrounds
 
 Color = tuple[float, float, float]
 
@@ -128,9 +128,12 @@ def _reduced(pixels: np.ndarray, down: int, across: int) -> np.ndarray:
     return whole.reshape(rows, down, columns, across, 3).mean(axis=(1, 3))
 
 
-def _sum(added: list[Part], world: bpy.types.World, notes) -> tuple[Color, _Picture | _Evaluated | None]:
+def _sum(met: Backgrounds, world: bpy.types.World, notes) -> tuple[Color, _Picture | _Evaluated | None]:
     """The radiance of a sum of backgrounds, and a picture that is multiplied by it if there is one."""
-    owner, total = f"The world {world.name!r}", np.zeros(3)
+    owner, total, added = f"The world {world.name!r}", np.zeros(3), met.added
+    if met.tree is not None:
+        rays = met.rays if met.is_asked else ""
+        return (1.0, 1.0, 1.0), _Evaluated(owner, told_of_nodes(world), (1.0,), rays, [met.tree], met)
     if len(added) == 1 and constant_of(added[0].shader, "Strength") is not None:
         picture = _picture(added[0].shader.socket("Color"))
         if picture is not None:
@@ -139,7 +142,9 @@ def _sum(added: list[Part], world: bpy.types.World, notes) -> tuple[Color, _Pict
     varying = [part for part in added if _varies(part.shader)]
     if varying and not all(map(_is_unreadable, varying)):
         shares = tuple(part.share for part in added)
-        return (1.0, 1.0, 1.0), _Evaluated(owner, told_of_nodes(world), shares, [part.shader for part in added])
+        return (1.0, 1.0, 1.0), _Evaluated(
+            owner, told_of_nodes(world), shares, "", [part.shader for part in added], met
+        )
     for part in added:
         total += part.share * np.array(color_times_strength(part.shader, owner, notes))
     return finite_radiance(tuple(total.tolist()), owner, notes), None
@@ -168,25 +173,28 @@ def _are_same(a, b) -> bool:
 @dataclass(frozen=True)
 class _Evaluated:
     """A picture that nodes make. owner: the subject of a sentence. told: the fingerprint of all nodes. shares: of the
-    shaders that are added."""
+    shaders that are added. rays: which, if it depends on them."""
 
     owner: str
     told: str
     shares: tuple[float, ...]
+    rays: str
     shaders: list[Shader] = field(compare=False)
+    met: Backgrounds = field(compare=False)
 
     def read(self) -> tuple[Environment, tuple[str, ...]]:
         """The environment, and notes on what it lacks."""
         notes, found, read = SimpleNamespace(said={}), 0.0, []
         notes.add = lambda sentence: notes.said.setdefault(sentence)
+
+        def plain(shader: Shader) -> Color:
+            return color_times_strength(shader, self.owner, notes)
+
         for share, shader in zip(self.shares, self.shaders, strict=True):
-            try:
-                graph, sampling = read_radiance(shader)
-                for reason, used in graph.doubts.items():
-                    notes.add(f"{self.owner} has {reason}; {used}")
-                read.append((share, graph.graph, sampling))
-            except UnreadableError:
-                found = found + share * np.array(color_times_strength(shader, self.owner, notes))
+            graph, sampling = read_radiance(shader, self.met.factor, plain)
+            for reason, used in graph.doubts.items():
+                notes.add(f"{self.owner} has {reason}; {used}")
+            read.append((share, graph.graph, sampling))
         rows = max(sampling.rows for _, _, sampling in read)
         suns = [sun for _, _, sampling in read for sun in sampling.suns]
         for share, graph, _ in read:

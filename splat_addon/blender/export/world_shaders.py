@@ -1,56 +1,63 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reads the shaders of a world, mixed and added, as a sum of Background nodes: one for the light that surfaces receive,
-and one for what the camera sees.
-"""
+and one for what the camera sees. Shaders that something mixes by direction stay a tree."""
 
 from __future__ import annotations
 
-from functools import partial
+from dataclasses import dataclass, field
 
 import bpy
 
-from ..materials.node_products import product
+from ..materials.graphs.channels import constant_number
+from ..materials.graphs.worlds import SHINING
 from ..materials.node_walks import linked, outer
-from ..materials.surface_shaders import Part, Shader, mix_factor, parts, surface_shader
-from ..materials.texture_images import UnreadableError
+from ..materials.surface_shaders import Part, Shader, parts, surface_shader
 
 #: Outputs of a Light Path node that are 1 for the rays: those that bring light to surfaces, and the camera's.
 _LIGHT, _CAMERA = "Is Diffuse Ray", "Is Camera Ray"
 
 
-def backgrounds(world: bpy.types.World, notes) -> tuple[list[Part], list[Part]]:
-    """What lights the scene, and what the camera sees: Background nodes, and Emission nodes, which do the same."""
+@dataclass
+class Backgrounds:
+    """What some rays meet. added: Background nodes, and Emission nodes, which do the same. tree: the shader that mixes
+    them by direction, if there is one; then the shares of those that are added are not known."""
+
+    rays: str
+    added: list[Part] = field(default_factory=list)
+    tree: Shader | None = None
+    #: whether a factor depends on the rays
+    is_asked: bool = False
+
+    def factor(self, mix: Shader) -> float | None:
+        """The factor of a Mix Shader for these rays, 0 to 1; None if it depends on the direction."""
+        source = linked(outer(mix.node.inputs[0], mix.groups)[0])
+        if source is not None and source[0].type == "LIGHT_PATH" and source[1].startswith("Is "):
+            self.is_asked = True
+            return float(source[1] == self.rays)
+        factor = constant_number(mix.node.inputs[0], mix.groups)
+        return None if factor is None else min(max(factor, 0.0), 1.0)
+
+
+def backgrounds(world: bpy.types.World, notes) -> tuple[Backgrounds, Backgrounds]:
+    """What lights the scene, and what the camera sees."""
     shader, owner = surface_shader(world), f"The world {world.name!r}"
-    if shader is None:
-        return [], []
-    light, seen = (list(parts(shader, factor_of=partial(_factor, owner, rays, notes))) for rays in (_LIGHT, _CAMERA))
-    for part in (*light, *seen):
-        if not _shines(part):
-            notes.add(f"{owner} has a {part.shader.node.bl_label} node, which counts as black")
-    return list(filter(_shines, light)), list(filter(_shines, seen))
+    found = Backgrounds(_LIGHT), Backgrounds(_CAMERA)
+    for each in found if shader is not None else ():
+        for part in parts(shader, factor_of=lambda mix, each=each: _share(each, mix, owner, notes)):
+            if part.shader.node.type in SHINING:
+                each.added.append(part)
+            else:
+                notes.add(f"{owner} has a {part.shader.node.bl_label} node, which counts as black")
+            if not part.is_sure:
+                each.tree = shader
+    return found
 
 
-def _shines(part: Part) -> bool:
-    return part.shader.node.type in ("BACKGROUND", "EMISSION")
-
-
-def _factor(owner: str, rays: str, notes, mix: Shader) -> tuple[float, bool]:
-    """The factor of a Mix Shader for some rays, as `mix_factor`. owner: the subject of a sentence."""
+def _share(rays: Backgrounds, mix: Shader, owner: str, notes) -> tuple[float, bool]:
+    """The factor of a Mix Shader, in the form of `mix_factor`. owner: the subject of a sentence."""
     source = linked(outer(mix.node.inputs[0], mix.groups)[0])
-    if source is not None and source[0].type == "LIGHT_PATH" and source[1].startswith("Is "):
-        if source[1] not in (_LIGHT, _CAMERA):
-            notes.add(f"{owner} asks for {source[1]}; everything is lit by what diffuse rays meet")
-        return float(source[1] == rays), True
-    factor, is_constant = mix_factor(mix)
-    if not is_constant:
-        notes.add(f"{owner} mixes its shaders by {_what_feeds(mix)}; the plain value of the factor's socket is used")
-    return factor, True
-
-
-def _what_feeds(mix: Shader) -> str:
-    """What a factor comes from, if it is not a constant."""
-    try:
-        product(mix.node.inputs[0], mix.groups)
-    except UnreadableError as error:
-        return str(error)
-    return "a texture"
+    if source is not None and source[0].type == "LIGHT_PATH" and source[1] not in (_LIGHT, _CAMERA):
+        notes.add(f"{owner} asks for {source[1]}; everything is lit by what diffuse rays meet")
+    factor = rays.factor(mix)
+    # a share of something that varies: neither is left out
+    return (0.5, False) if factor is None else (factor, True)

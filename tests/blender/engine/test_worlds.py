@@ -113,7 +113,20 @@ def sky_of_preetham(world):
     link(world, sky_node(world, "PREETHAM", turbidity=4.0, sun_direction=(0.3, -0.5, 0.4)))
 
 
+def sky_mixed_with_a_colour_by_a_pattern(world):
+    tree, mix = world.node_tree, add(world, "MixShader")
+    sides = tree.nodes["Background"], add(world, "Emission")
+    link(world, sky(world))
+    sides[1].inputs["Color"].default_value = (0.9, 0.1, 0.3, 1)
+    tree.links.new(add(world, "TexWave").outputs["Color"], mix.inputs[0])
+    for k, node in enumerate(sides):
+        tree.links.new(node.outputs[0], mix.inputs[k + 1])
+    output = next(node for node in tree.nodes if node.type == "OUTPUT_WORLD")
+    tree.links.new(mix.outputs[0], output.inputs["Surface"])
+
+
 WORLDS = (
+    sky_mixed_with_a_colour_by_a_pattern,
     pattern_of_any_strength,
     coloured_mirror_ball,
     stretched_picture_and_a_colour,

@@ -70,6 +70,17 @@ def constant_of(shader: Shader, name: str) -> tuple[float, ...] | None:
     return None if layers.is_asked or reading.asks_owner else constant_value(graph)
 
 
+def constant_number(socket, groups: tuple[Node, ...]) -> float | None:
+    """The number of a socket of any node; None if it varies, or nothing of it can be read."""
+    layers = _Nothing()
+    reading = GraphReading(layers, groups)
+    try:
+        graph, _ = reading.graph(reading.number(reading.read_strictly(socket)))
+    except UnreadableError:
+        return None
+    return None if layers.is_asked or reading.asks_owner else constant_value(graph)[0]
+
+
 def read_color(socket, groups: tuple[Node, ...], layers: MeshLayers) -> ReadGraph:
     """A colour socket of any node. Raises UnreadableError if nothing of it can be read."""
     reading = GraphReading(layers, groups)

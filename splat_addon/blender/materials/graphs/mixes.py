@@ -7,6 +7,7 @@ supplies its own (`mixed_leaves`).
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -21,45 +22,61 @@ from .reading import GraphReading, Value
 
 _ZERO, _ONE = Value((0.0,)), Value((1.0,))
 
+#: Reads something of a shader.
+Leaf = Callable[[GraphReading, Shader], Value]
+
 
 def read_mixed(shader: Shader, name: str, layers: MeshLayers) -> ReadGraph:
     """The colour, opacity or emission of a tree of shaders."""
     reading = GraphReading(layers)
-    through = _combined(reading, shader, "opacity", {})
+    through = combined(reading, shader, _leaf("opacity"))
     opacity = reading.add("clamp", reading.add("invert", _ONE, through), _ZERO, _ONE, settings=(False,))
     if name == "opacity":
         return ReadGraph(*reading.graph(opacity), reading.doubts, reading.asks_owner)
-    total = reading.three(_combined(reading, shader, name, {}), True)
+    total = reading.three(combined(reading, shader, _leaf(name)), True)
     shown = reading.color("divided", total, opacity)
     return ReadGraph(*reading.graph(shown), reading.doubts, reading.asks_owner)
 
 
-def _combined(reading: GraphReading, shader: Shader | None, name: str, made: dict[Shader, Value]) -> Value:
-    """One channel of a tree; of the opacity, what is let through. made: the same for those that were reached already,
-    which is added to; a ring of shaders ends at black."""
-    if shader is None:
-        return _ZERO
-    if shader not in made:
-        made[shader] = _ZERO
-        made[shader] = _of_one(reading, shader, name, made)
-    return made[shader]
+def _leaf(name: str) -> Leaf:
+    """One channel of a shader that mixes no others; of the opacity, what is let through."""
+    return lambda reading, shader: LEAVES[name](_Steps(reading, shader))
 
 
-def _of_one(reading: GraphReading, shader: Shader, name: str, made: dict[Shader, Value]) -> Value:
-    sockets = mixed_sockets(shader)
-    if sockets is None:
-        return LEAVES[name](_Steps(reading.inside(shader.groups), shader))
-    parts = [_combined(reading, shader.feeding(socket), name, made) for socket in sockets]
-    if len(parts) < 2:
-        return parts[0] if parts else _ZERO
-    if name != "opacity":
-        parts = [reading.three(part, True) for part in parts]
-    width = parts[0].width
-    if shader.node.type == "ADD_SHADER":
-        share, parts = Value((0.5,)), [reading.add("multiplied", Value((2.0,)), p, width=width) for p in parts]
-    else:
-        share = reading.inside(shader.groups).read(shader.node.inputs[0])
-    return reading.add("mixed", share, *parts, settings=(True,), width=width, is_color=width == 3)
+def _factor(reading: GraphReading, mix: Shader) -> Value:
+    return reading.read(mix.node.inputs[0])
+
+
+def combined(reading: GraphReading, shader: Shader | None, leaf: Leaf, factor: Leaf = _factor) -> Value:
+    """What a tree of shaders comes to. leaf: of a shader that mixes no others; factor: of a Mix Shader. Both are called
+    with a reading inside the shader's groups. A ring of shaders ends at black."""
+    made: dict[Shader, Value] = {}
+
+    def value(shader: Shader | None) -> Value:
+        if shader is None:
+            return _ZERO
+        if shader not in made:
+            made[shader] = _ZERO
+            made[shader] = of_one(shader)
+        return made[shader]
+
+    def of_one(shader: Shader) -> Value:
+        inside, sockets = reading.inside(shader.groups), mixed_sockets(shader)
+        if sockets is None:
+            return leaf(inside, shader)
+        parts = [value(shader.feeding(socket)) for socket in sockets]
+        if len(parts) < 2:
+            return parts[0] if parts else _ZERO
+        width = max(part.width for part in parts)
+        if width == 3:
+            parts = [reading.three(part, True) for part in parts]
+        if shader.node.type == "ADD_SHADER":
+            share, parts = Value((0.5,)), [reading.add("multiplied", Value((2.0,)), p, width=width) for p in parts]
+        else:
+            share = factor(inside, shader)
+        return reading.add("mixed", share, *parts, settings=(True,), width=width, is_color=width == 3)
+
+    return value(shader)
 
 
 @dataclass(frozen=True)

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from types import SimpleNamespace
 from typing import NamedTuple
 
@@ -17,8 +18,12 @@ from ..node_walks import Node
 from ..surface_shaders import Shader
 from ..texture_images import UnreadableError, linear_pixels
 from .channels import ReadGraph
+from .mixes import combined
 from .reading import STRAIGHT_ON, GraphReading, Value, reads, unreadable
 from .sources import coordinates, derived
+
+#: Shaders that a world shines with, which do the same; others are black.
+SHINING = ("BACKGROUND", "EMISSION")
 
 #: Rows of the picture: of patterns, and the most of one that has images.
 _ROWS, _MOST_ROWS = 256, 1024
@@ -72,13 +77,35 @@ class _Directions:
         raise UnreadableError(f"the attribute {name!r}, which a world does not have")
 
 
-def read_radiance(shader: Shader) -> tuple[ReadGraph, Sampling]:
-    """What a Background or Emission node sends out, and what its picture needs. Raises UnreadableError if
-    nothing of it can be read."""
+def read_radiance(
+    shader: Shader,
+    factor: Callable[[Shader], float | None] | None = None,
+    plain: Callable[[Shader], tuple[float, float, float]] | None = None,
+) -> tuple[ReadGraph, Sampling]:
+    """What a Background or Emission node sends out, or a tree that mixes and adds them, and what its picture needs.
+
+    factor: of a Mix Shader in a tree, None if it depends on the direction. plain: what of a shader is sent out if
+    nothing of it can be read; without it, that raises UnreadableError.
+    """
     layers = _Directions()
-    reading = GraphReading(layers, shader.groups)
-    color, strength = (reading.read_strictly(shader.node.inputs[name]) for name in ("Color", "Strength"))
-    sent = reading.color("multiplied", reading.three(color, True), strength)
+
+    def share(reading: GraphReading, mix: Shader) -> Value:
+        number = factor(mix)
+        return reading.read(mix.node.inputs[0]) if number is None else Value((number,))
+
+    def sent_by(reading: GraphReading, shader: Shader) -> Value:
+        if shader.node.type not in SHINING:
+            return Value((0.0,) * 3, 3, True)
+        try:
+            color, strength = (reading.read_strictly(shader.node.inputs[name]) for name in ("Color", "Strength"))
+        except UnreadableError:
+            if plain is None:
+                raise
+            return Value(plain(shader), 3, True)
+        return reading.color("multiplied", reading.three(color, True), strength)
+
+    reading = GraphReading(layers)
+    sent = combined(reading, shader, sent_by, share)
     doubts = {what: how for what, how in reading.doubts.items() if how != STRAIGHT_ON}
     return ReadGraph(*reading.graph(sent), doubts), Sampling(layers.rows, layers.suns)
 
