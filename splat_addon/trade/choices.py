@@ -74,13 +74,13 @@ def _counted(samples: int) -> str:
 
 def _numbers(settings: Settings, plan: FramePlan) -> Iterator[Choice]:
     for tolerance in TOLERANCES:
-        yield Choice(f"As set, Detail Tolerance {tolerance:g}", {"detail_tolerance": tolerance})
+        yield Choice(f"Detail Tolerance {tolerance:g}", {"detail_tolerance": tolerance})
     passes = {each.name for each in plan.passes}
     if "shadow_maps" in passes:
         for texels in SHADOW_RESOLUTIONS:
-            yield Choice(f"As set, Shadow Resolution {texels}", {"shadow_resolution": texels})
+            yield Choice(f"Shadow Resolution {texels}", {"shadow_resolution": texels})
     if "peel" in passes:
         for layers in LAYERS:
-            yield Choice(f"As set, {layers} Layers", {"layers": layers})
-    yield Choice("As set, Surfel Storage 16-bit", {"storage": "16-bit"})
-    yield Choice("As set, Blend Precision Float 16", {"sum_format": "float16"})
+            yield Choice(f"{layers} Layers", {"layers": layers})
+    yield Choice("Surfel Storage 16-bit", {"storage": "16-bit"})
+    yield Choice("Blend Precision Float 16", {"sum_format": "float16"})

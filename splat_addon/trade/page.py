@@ -38,7 +38,7 @@ def page(title: str, about: str, rows: Sequence[Row], exact: ExactPictures) -> s
         f"<h1>{escape(title)}</h1><p>{escape(about)}</p>",
         "<p>Each picture is compared with the exact picture of its pixel filter. FLIP is 0 for equal pictures; below "
         f"0.01 few people see a difference. The exact pictures are converged to about {converged}. Bold rows are the "
-        "best for their time.</p>",
+        "best for their time. Rows that name one setting have all others as set.</p>",
         _table(rows, best),
         "<h2>Error against time</h2><p>Squares have a box pixel, discs a Gaussian one.</p>",
         _plot(rows, best),

@@ -56,6 +56,11 @@ def exchange(**callbacks) -> None:
     _exchange = Exchange(**callbacks)
 
 
+def exchanged() -> Exchange:
+    """What renders exchange at present."""
+    return _exchange
+
+
 @contextmanager
 def exchanging(**callbacks) -> Iterator[None]:
     """Exchange frames with the renders within this context, as in `exchange`."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 GERMAN = {
     "Aim": "Ziel",
+    "Click to use": "Klick übernimmt",
     "Choose the engine Surfel Splatting first": "Wählen Sie zuerst die Engine Surfel Splatting",
     "Error": "Fehler",
     "Exact Pictures": "Exakte Bilder",

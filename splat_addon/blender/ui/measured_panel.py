@@ -11,6 +11,9 @@ from ..engine.measuring import measured
 from ..ids import MEASURE, SAVE_MEASURED, SHOW_DIFFERENCE, USE_MEASURED
 from .engine_panel import EnginePanel
 
+#: The share of a line that the names of choices take.
+_NAMES = 0.58
+
 
 class RENDER_PT_surfel_measured(EnginePanel, bpy.types.Panel):
     bl_context = "render"
@@ -26,13 +29,19 @@ class RENDER_PT_surfel_measured(EnginePanel, bpy.types.Panel):
         if not found.is_whole:
             layout.operator(MEASURE, text="Go On", icon="PLAY").goes_on = True
         column, best = layout.column(align=True), frontier(found.rows)
+        head = column.split(factor=_NAMES, align=True)
+        head.label(text="Click to use")
+        numbers = head.row(align=True)
+        for title in ("Error", "Seconds", ""):
+            numbers.label(text=title)
         for place, row in enumerate(found.rows):
-            line = column.split(factor=0.5, align=True)
-            line.label(text=row.choice.name, icon="SOLO_ON" if place in best else "BLANK1", translate=False)
-            line.label(text=f"FLIP {row.flip:.4f}   {row.seconds:.3g} s", translate=False)
-            buttons = line.row(align=True)
-            buttons.operator(USE_MEASURED).row = place
-            buttons.operator(SHOW_DIFFERENCE, text="", icon="IMAGE_DATA").row = place
+            line = column.split(factor=_NAMES, align=True)
+            icon = "SOLO_ON" if place in best else "BLANK1"
+            line.operator(USE_MEASURED, text=row.choice.name, icon=icon, translate=False).row = place
+            numbers = line.row(align=True)
+            numbers.label(text=f" {row.flip:.4f}", translate=False)
+            numbers.label(text=f"{row.seconds:.2g}", translate=False)
+            numbers.operator(SHOW_DIFFERENCE, text="", icon="IMAGE_DATA").row = place
         layout.operator(SAVE_MEASURED, icon="FILE_TICK")
 
 
