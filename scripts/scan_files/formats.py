@@ -70,6 +70,51 @@ def las_file(
     return stream.getvalue()
 
 
+def copc_file(nodes: list[np.ndarray], levels: list[int], pages: int = 1) -> bytes:
+    """A COPC file whose nodes have these points of format 6, each at a level of the octree. pages: that say where nodes
+    are, the first of which has the first nodes and says where the others are."""
+    import lazrs
+
+    vlr = lazrs.LazVlr.new_for_compression(6, 0, True)
+    laszip, total = bytes(vlr.record_data()), sum(map(len, nodes))
+    records = [[b"copc", 1, bytearray(160)], [b"laszip encoded", 22204, laszip]]
+    start = 375 + sum(54 + len(data) for _, _, data in records)
+    head = bytearray(375)
+    struct.pack_into("<4s", head, 0, b"LASF")
+    struct.pack_into("<BB", head, 24, 1, 4)
+    struct.pack_into("<HII", head, 94, 375, start, 2)
+    struct.pack_into("<BHI", head, 104, 6 | 0x80, nodes[0].dtype.itemsize, 0)
+    struct.pack_into("<6d", head, 131, *SCALE, *OFFSET)
+    struct.pack_into("<Q", head, 247, total)
+    stream = io.BytesIO(bytes(start))
+    stream.seek(start)
+    compressor, places = lazrs.LasZipCompressor(stream, vlr), [start + 8]
+    for number, rows in enumerate(nodes):
+        compressor.compress_many(np.frombuffer(rows.tobytes(), np.uint8))
+        if number < len(nodes) - 1:
+            compressor.finish_current_chunk()
+            places.append(stream.tell())
+    compressor.done()
+    places.append(int.from_bytes(stream.getvalue()[start : start + 8], "little"))  # of the chunk table
+    entries = [
+        struct.pack("<4iQ2i", level, k, 0, 0, place, end - place, len(rows))
+        for k, (level, rows, place, end) in enumerate(zip(levels, nodes, places[:-1], places[1:], strict=True))
+    ]
+    stream.seek(0, io.SEEK_END)
+    each, root = -(-len(entries) // pages), entries[: -(-len(entries) // pages)]
+    for page in (entries[k : k + each] for k in range(each, len(entries), each)):
+        root = [*root, struct.pack("<4iQ2i", 9, 0, 0, 0, stream.tell(), 32 * len(page), -1)]
+        stream.write(b"".join(page))
+    first = b"".join(root)
+    struct.pack_into("<2Q", records[0][2], 40, stream.tell(), len(first))
+    stream.write(first)
+    stream.seek(0)
+    stream.write(bytes(head))
+    for user, number, data in records:
+        stream.write(struct.pack("<H16sHH32s", 0, user, number, len(data), b"") + bytes(data))
+    return stream.getvalue()
+
+
 def ptx_scan(points: np.ndarray, columns: int, matrix: np.ndarray) -> str:
     """One scan of a PTX file. points: rows of numbers, whose number is a multiple of `columns`. matrix: (4, 4), which
     points are multiplied with from the right."""

@@ -42,29 +42,62 @@ class Cloud:
 
     portions: the share of the file that was read so far, and the next points; raises ValueError with a sentence.
     places: scan number -> (3,) float64 where its scanner stood. said: sentences about what was assumed or left out.
-    Both are complete when all portions were read.
+    Both are complete when all portions were read. count: of points in the file, if it says so. is_thinned: whether the
+    portions leave some out.
     """
 
     portions: Iterator[tuple[float, Table]]
     places: dict[int, np.ndarray] = field(default_factory=dict)
     said: list[str] = field(default_factory=list)
+    count: int | None = None
+    is_thinned: bool = False
 
 
-def read_all(cloud: Cloud, progress: Progress | None = None) -> Columns:
-    """All points of a cloud. Raises `ReadingCancelled`, and ValueError with a sentence."""
-    tables, count = [], 0
+def read_all(cloud: Cloud, progress: Progress | None = None, most: int = 0) -> Columns:
+    """All points of a cloud, or an even sample of half of `most` to `most` of more. Raises `ReadingCancelled`, and
+    ValueError with a sentence."""
+    sample = EvenSample(most)
     for share, table in cloud.portions:
-        tables.append(table)
-        count += len(next(iter(table.values()), ()))
-        if progress is not None and not progress(count, share):
+        sample.add(table)
+        if progress is not None and not progress(sample.count, share):
             raise ReadingCancelled
-    return Columns(joined(tables))
+    if sample.every > 1 or cloud.is_thinned:
+        kept, of = sum(map(_length, sample.tables)), max(sample.count, cloud.count or 0)
+        cloud.said.append(f"Took {kept:,} of {of:,} points, evenly")
+    return Columns(joined(sample.tables))
+
+
+class EvenSample:
+    """Keeps each `every`-th of the rows that are added, so that there are at most `most`, or all if that is 0.
+
+    tables: what is kept. count: rows that were added.
+    """
+
+    def __init__(self, most: int):
+        self._most, self.tables, self.every, self.count = most, [], 1, 0
+
+    def add(self, table: Table) -> None:
+        """Add rows, of which those that are kept are copied if not all are."""
+        if self.every > 1:
+            first = -self.count % self.every
+            kept = {name: column[first :: self.every].copy() for name, column in table.items()}
+        else:
+            kept = table
+        self.tables.append(kept)
+        self.count += _length(table)
+        while self._most and sum(map(_length, self.tables)) > self._most:
+            self.tables = [{name: column[::2].copy() for name, column in joined(self.tables).items()}]
+            self.every *= 2
+
+
+def _length(table: Table) -> int:
+    return len(next(iter(table.values()), ()))
 
 
 def joined(tables: list[Table]) -> Table:
     """The tables one after another, from which their columns are taken. Those that lack a column have no colour, or 0,
     there."""
-    counts = [len(next(iter(table.values()), ())) for table in tables]
+    counts = [*map(_length, tables)]
     names = dict.fromkeys(name for table in tables for name in table)
     return {name: _column(tables, counts, name) for name in names or POSITION}
 

@@ -32,6 +32,7 @@ def read_contents(
     flatness: float = DEFAULT_FLATNESS,
     float_colors: str = FLOAT_COLORS[0],
     progress: Progress | None = None,
+    most: int = 0,
 ) -> StoredSurfels | Gaussians | Points:
     """What a file of points holds. Its `said` has a sentence about each thing that was assumed or left out, such as
     faces.
@@ -40,6 +41,7 @@ def read_contents(
     float_colors: what red, green and blue mean if they are floats, a name in `FLOAT_COLORS`: sRGB display values, as
         Blender's own import takes them, or scene-linear ones.
     progress: called with the number of points and the share of the file so far, except for PLY and SPZ.
+    most: bare points to take, evenly, from a file of more, of which LAZ, COPC and LAS are not read whole; 0: all.
 
     Raises ValueError with one sentence for a file that has none of the formats, is damaged or has no positions; OSError
     if it cannot be read; `ReadingCancelled` if `progress` returns False.
@@ -47,10 +49,15 @@ def read_contents(
     _check_float_colors(float_colors)
     head = _head(path)
     if is_ply(head):
-        return read_ply_contents(path, flatness, float_colors)
+        cloud = opened_points(path) if most else None
+        return (
+            _points(cloud, float_colors, progress, most) if cloud else read_ply_contents(path, flatness, float_colors)
+        )
     if spz.is_this(head):
         return spz.read_spz(path, flatness)
-    return _points(_reader(head).opened(path), float_colors, progress)
+    reader = _reader(head)
+    cloud = las.opened(path, most) if reader is las else reader.opened(path)
+    return _points(cloud, float_colors, progress, most)
 
 
 def point_pieces(
@@ -85,8 +92,8 @@ def _reader(head: bytes) -> ModuleType:
     raise ValueError(f"This is no file of points that can be read, which are {known}.{other_kind(head)}")
 
 
-def _points(cloud: Cloud, float_colors: str, progress: Progress | None) -> Points:
-    columns = read_all(cloud, progress)
+def _points(cloud: Cloud, float_colors: str, progress: Progress | None, most: int) -> Points:
+    columns = read_all(cloud, progress, most)
     said = [*cloud.said, *_without_black(columns)]
     found = points(columns, float_colors)
     said = (*found.said, *said, *coarse_steps(columns), *columns.passed_over())

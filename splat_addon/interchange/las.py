@@ -2,7 +2,8 @@
 """Reads LAS 1.0 to 1.4 (ASPRS), and LAZ and COPC, which are LAS with compressed points.
 
 Only the decompression needs a module, lazrs, whose wheels the extension brings. A COPC file is read as the LAZ file
-that it is, so its order does not matter. Sizes are checked against the file before anything is allocated.
+that it is, so its order does not matter; only if few of its points are wanted, `copc` says which.
+Sizes are checked against the file before anything is allocated.
 """
 
 from __future__ import annotations
@@ -14,8 +15,9 @@ from typing import BinaryIO
 
 import numpy as np
 
+from . import copc
 from .clouds import COLOR, PORTION, PORTION_BYTES, Cloud, Table, without
-from .laz import decompressor
+from .laz import chunk_size, decompressed_chunk, decompressor
 
 SIGNATURE = b"LASF"
 
@@ -30,6 +32,9 @@ _HEADER = np.dtype(
 )
 #: Where version 1.4 has the number of points, in a header of at least this size.
 _COUNT_14, _SIZE_14 = 247, 375
+
+#: Points of a chunk, if a file has none of its own; and points that are read for each that a thinned file needs.
+_CHUNK, _DENSER = 50_000, 8
 
 #: Bits of the point format that say that points are compressed.
 _COMPRESSED = 0xC0
@@ -73,33 +78,57 @@ def is_this(head: bytes) -> bool:
     return head.startswith(SIGNATURE)
 
 
-def opened(path: str | os.PathLike) -> Cloud:
-    """The points of the file. Raises ValueError with a sentence, OSError."""
+def opened(path: str | os.PathLike, most: int = 0) -> Cloud:
+    """The points of the file; of more than `most`, if that is not 0, some that lie everywhere, but at least as many.
+    Raises ValueError with a sentence, OSError."""
     with open(path, "rb") as stream:
         header = _read_header(stream, os.path.getsize(path))
-    cloud = Cloud(iter(()))
-    cloud.portions = _portions(path, header, cloud.said)
+    cloud = Cloud(iter(()), count=header.count, is_thinned=0 < most < header.count)
+    cloud.portions = _portions(path, header, cloud.said, most if cloud.is_thinned else 0)
     return cloud
 
 
-def _portions(path: str | os.PathLike, header: _Header, said: list[str]) -> Iterator[tuple[float, Table]]:
-    most = max(1, min(PORTION, PORTION_BYTES // header.record.itemsize))
-    done = withheld = 0
+def _portions(path: str | os.PathLike, header: _Header, said: list[str], most: int) -> Iterator[tuple[float, Table]]:
+    withheld = 0
     with open(path, "rb") as stream:
-        read = _reader(stream, os.path.getsize(path), header)
-        for first in range(0, header.count, most):
-            rows = np.frombuffer(read(min(most, header.count - first), first), header.record)
-            table, deleted = _table(rows, header)
-            done, withheld = done + len(rows), withheld + int(deleted.sum())
-            yield done / header.count, without(table, deleted)
+        for share, data in _data(stream, os.path.getsize(path), header, most):
+            table, deleted = _table(np.frombuffer(data, header.record), header)
+            withheld += int(deleted.sum())
+            yield share, without(table, deleted)
     if withheld:
         said.append(f"Left out {withheld:,} points that the file marks as deleted (withheld)")
     if extra := header.record["extra"].itemsize:
         said.append(f"Passed over {extra} bytes of each point that the file adds to its point format (extra bytes)")
 
 
+def _data(stream: BinaryIO, size: int, header: _Header, most: int) -> Iterator[tuple[float, bytes]]:
+    """The bytes of points, and the share of them so far. most: as of `opened`."""
+    length, runs, done = header.record.itemsize, [(0, header.count)], 0
+    nodes = copc.coarsest(stream, size, header.points, header.laszip, most) if most else None
+    read = _reader(stream, size, header)  # it checks the chunks, and stands at the first point
+    if most:
+        for number, (place, count, packed) in enumerate(nodes or ()):
+            stream.seek(place)
+            yield (number + 1) / len(nodes), decompressed_chunk(stream.read(packed), count, header.laszip, length)
+        runs = _spread(header, most) if nodes is None else []
+    total, at_once = max(sum(count for _, count in runs), 1), max(1, min(PORTION, PORTION_BYTES // length))
+    for start, number in runs:
+        for first in range(start, start + number, at_once):
+            count = min(at_once, start + number - first)
+            done += count
+            yield done / total, read(count, first)
+
+
+def _spread(header: _Header, most: int) -> list[tuple[int, int]]:
+    """The beginnings of all chunks: first point and number of some runs with several times `most` points, because
+    neighbours in the file are too close to one another."""
+    chunk = _CHUNK if header.laszip is None else chunk_size(header.laszip) or _CHUNK
+    each = max(1, _DENSER * most // -(-header.count // chunk))
+    return [(first, min(each, chunk, header.count - first)) for first in range(0, header.count, chunk)]
+
+
 def _reader(stream: BinaryIO, size: int, header: _Header) -> Callable[[int, int], bytes]:
-    """read(count, first) -> the bytes of the next points, of which `first` were read already."""
+    """read(count, first) -> the bytes of points from number `first` on."""
     stream.seek(header.points)
     if header.laszip is not None:
         return decompressor(stream, size, header.laszip, header.record.itemsize, header.count)
@@ -109,7 +138,12 @@ def _reader(stream: BinaryIO, size: int, header: _Header) -> Callable[[int, int]
             f"The LAS file says that it has {header.count:,} points of {length} bytes, but only "
             f"{max(size - header.points, 0):,} bytes are left for them; it is cut off or damaged."
         )
-    return lambda count, first: stream.read(count * length)
+
+    def read(count: int, first: int) -> bytes:
+        stream.seek(header.points + first * length)
+        return stream.read(count * length)
+
+    return read
 
 
 def _table(rows: np.ndarray, header: _Header) -> tuple[Table, np.ndarray]:

@@ -6,7 +6,9 @@ It is a wheel of the extension; where it is missing, a sentence says so. What la
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
+from io import BytesIO
 from typing import BinaryIO
 
 import numpy as np
@@ -30,7 +32,7 @@ _LAYERS, _EXTRA_BYTES = {10: 9, 11: 1, 12: 2, 13: 1}, 14
 def decompressor(
     stream: BinaryIO, size: int, laszip: bytes, length: int, total: int
 ) -> Callable[[int, int], bytearray]:
-    """read(count, first) -> the bytes of the next points, of which `first` were read already.
+    """read(count, first) -> the bytes of points from number `first` on.
 
     stream: at the first point. size: of the file. laszip: its description of the compression. length: bytes of a
     point. Raises ValueError with a sentence.
@@ -48,12 +50,52 @@ def decompressor(
     if _trusted(lambda: lazrs.LazVlr(laszip).item_size()) != length:
         raise ValueError(f"The LAZ file does not compress the points of {length} bytes that it has; it is damaged.")
 
+    place = 0
+
     def read(count: int, first: int) -> bytearray:
-        points = bytearray(count * length)
-        _trusted(lambda: source.decompress_many(points), f"after {first:,} of {total:,} points")
+        nonlocal place
+        points, where = bytearray(count * length), f"after {first:,} of {total:,} points"
+        if first != place:
+            _trusted(lambda: source.seek(first), where)
+        _trusted(lambda: source.decompress_many(points), where)
+        place = first + count
         return points
 
     return read
+
+
+def chunk_size(laszip: bytes) -> int | None:
+    """Points of a chunk, by the description of the compression; None if chunks differ or there are none."""
+    if lazrs is None or int.from_bytes(laszip[:2], "little") == _ONE_RUN:
+        return None
+    vlr = _trusted(lambda: lazrs.LazVlr(laszip))
+    return None if vlr.uses_variable_size_chunks() else max(int(vlr.chunk_size()), 1)
+
+
+def chunks_at(stream: BinaryIO, size: int, start: int, laszip: bytes) -> dict[int, tuple[int, int]]:
+    """Where in the file each chunk begins -> its number of points and of bytes. start: of the points. Raises ValueError
+    with a sentence."""
+    stream.seek(start)
+    _chunk_table(stream, start, size)
+    stream.seek(start)
+    vlr = _trusted(lambda: lazrs.LazVlr(laszip))
+    place, found = start + 8, {}
+    for count, length in _trusted(lambda: lazrs.read_chunk_table(stream, vlr)):
+        found[place] = count, length
+        place += length
+    return found
+
+
+def decompressed_chunk(data: bytes, count: int, laszip: bytes, length: int) -> bytearray:
+    """The bytes of the `count` points of a chunk, each of `length`: read as those of a file that has no other one,
+    because lazrs finds chunks of one size only. Raises ValueError with a sentence."""
+    file = BytesIO((8 + len(data)).to_bytes(8, "little") + data)
+    file.seek(0, os.SEEK_END)
+    _trusted(lambda: lazrs.write_chunk_table(file, [(count, len(data))], lazrs.LazVlr(laszip)))
+    file.seek(0)
+    points = bytearray(count * length)
+    _trusted(lambda: lazrs.LasZipDecompressor(file, laszip).decompress_many(points), "in one of its chunks")
+    return points
 
 
 def _chunk_table(stream: BinaryIO, start: int, size: int) -> int:

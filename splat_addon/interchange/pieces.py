@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from .clouds import COLOR, Cloud, Progress, ReadingCancelled, joined
+from .clouds import COLOR, Cloud, EvenSample, Progress, ReadingCancelled, joined
 from .columns import FLOAT_COLORS, Columns, with_white_1
 from .ply_contents import coarse_steps
 from .points import Points, points
@@ -28,20 +28,15 @@ class PointPieces:
     ):
         """Goes through the file once. opened: opens it, each time it is called. Raises `ReadingCancelled`, ValueError
         with a sentence, OSError."""
-        self._opened, self._float_colors, self.count = opened, float_colors, 0
-        kept, largest, every = [], {}, 1
-        cloud = opened()
+        self._opened, self._float_colors = opened, float_colors
+        sample, largest, cloud = EvenSample(_SAMPLE), {}, opened()
         for share, table in cloud.portions:
-            number = len(next(iter(table.values()), ()))
-            kept.append({name: column[-self.count % every :: every].copy() for name, column in table.items()})
             for name in table.keys() & set(COLOR):
                 largest[name] = max(largest.get(name, 0), table[name].max(initial=0))
-            self.count += number
-            if sum(len(next(iter(each.values()), ())) for each in kept) > _SAMPLE:
-                kept, every = [{n: column[::2] for n, column in joined(kept).items()}], 2 * every
-            if progress is not None and not progress(self.count, share):
+            sample.add({name: column.copy() for name, column in table.items()})
+            if progress is not None and not progress(sample.count, share):
                 raise ReadingCancelled
-        self._columns = Columns(joined(kept))
+        self.count, self._columns = sample.count, Columns(joined(sample.tables))
         if largest and not any(largest.values()):
             # formats with a place for colours have black where there are none
             for name in COLOR:

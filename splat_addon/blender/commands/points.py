@@ -37,6 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     source = parser.add_mutually_exclusive_group()
     source.add_argument("files", nargs="*", default=[], metavar="FILE", help="scans, Gaussian splats or surfels")
     source.add_argument("--objects", nargs="+", help="names; without them and files, all visible points")
+    parser.add_argument("--most", type=int, default=0, metavar="NUMBER", help="points to take of a scan with more")
     parser.add_argument(
         "--series", action="store_true", help="show the numbered files beside FILE at the frames of their numbers"
     )
@@ -90,7 +91,7 @@ def _import_files(options: argparse.Namespace) -> None:
     for path in options.files:
         path, scene = str(Path(path).absolute()), bpy.context.scene
         shown, offset = first_shown(path, scene) if options.series else (path, 0)
-        work = FileImport(shown, options, scene, options.float_colors)
+        work = FileImport(shown, options, scene, options.float_colors, max(options.most, 0))
         try:
             work.run()
             made = work.place(bpy.context)
@@ -101,7 +102,9 @@ def _import_files(options: argparse.Namespace) -> None:
         if options.color_by:
             getattr(made, OBJECT_SETTINGS).color_by = options.color_by
         if options.series:
-            work.notes.append(begin_series(made, path, offset, options, options.float_colors, shown))
+            work.notes.append(
+                begin_series(made, path, offset, options, options.float_colors, max(options.most, 0), shown)
+            )
         print(f"{work.name}: {len(work.surfels):,} surfels", flush=True)
         for note in work.notes:
             print(f"{work.name}: {note}", flush=True)

@@ -35,9 +35,13 @@ class FileImport:
     path: of the file. share: the finished share. points: how many were read so far. is_cancelled: set from outside.
     """
 
-    def __init__(self, path: str, properties: PointsProperties, scene: bpy.types.Scene, float_colors: str):
+    def __init__(
+        self, path: str, properties: PointsProperties, scene: bpy.types.Scene, float_colors: str, most: int = 0
+    ):
+        """most: points to take of a scan that has more; 0: all."""
         self.name, self.path = Path(path).name, path
         self._keywords, self._flatness, self._colors = keywords(properties), properties.flatness, float_colors
+        self._most = most
         self._eye, self._offset = viewpoint(properties, scene), scene_offset(scene)
         self._attributes, self._rows, self._scanner_path = {}, None, None
         self._is_captured, self._has_colors, self._scanner = True, True, None
@@ -52,7 +56,7 @@ class FileImport:
             self.points = points
             return self._go_on(_READING * share, told)
 
-        contents = read_contents(self.path, self._flatness, self._colors, reading)
+        contents = read_contents(self.path, self._flatness, self._colors, reading, self._most)
         if isinstance(contents, Points):
             self.surfels = self._surfels_of(contents, told)
         else:

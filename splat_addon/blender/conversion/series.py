@@ -54,6 +54,9 @@ class SurfelSeries(PointsProperties, bpy.types.PropertyGroup):
         description="What the files' colours mean if they are floats and the files do not say it",
         items=[(name, name.title(), "") for name in FLOAT_COLORS],
     )
+    most_points: IntProperty(
+        name="At Most", description="Points to take of a file that has more, evenly; 0 takes all", default=0, min=0
+    )
     shown: StringProperty(options={"HIDDEN"})
     why_not: StringProperty(options={"HIDDEN"})
 
@@ -80,7 +83,13 @@ def first_shown(path: str, scene: bpy.types.Scene) -> tuple[str, int]:
 
 
 def begin_series(
-    made: bpy.types.Object, path: str, offset: int, properties: PointsProperties, float_colors: str, shown: str
+    made: bpy.types.Object,
+    path: str,
+    offset: int,
+    properties: PointsProperties,
+    float_colors: str,
+    most: int,
+    shown: str,
 ) -> str:
     """Let the mesh of a new object show a series from now on. shown: the file whose surfels it has. Returns a
     sentence."""
@@ -88,7 +97,7 @@ def begin_series(
     series = series_of(mesh)
     for name in PointsProperties.__annotations__:
         setattr(series, name, getattr(properties, name))
-    series.float_colors, series.frame_offset = float_colors, offset
+    series.float_colors, series.most_points, series.frame_offset = float_colors, most, offset
     mesh[SERIES_ORIGIN] = (np.array(made.matrix_world.translation, np.float64) + offset_of(mesh)).tolist()
     series.shown = _told(series, shown)
     series.path = path  # the last, because it begins to show frames
@@ -120,7 +129,7 @@ def show_frame(mesh: bpy.types.Mesh, scene: bpy.types.Scene) -> None:
         told = _told(series, path)
         if told == series.shown:
             return
-        work = FileImport(path, series, scene, series.float_colors)
+        work = FileImport(path, series, scene, series.float_colors, series.most_points)
         work.run()
         work.refill(mesh, scene, numbers_of(mesh, SERIES_ORIGIN, 3, np.zeros(3)))
         series.why_not = ""
@@ -134,7 +143,7 @@ def show_frame(mesh: bpy.types.Mesh, scene: bpy.types.Scene) -> None:
 def _told(series: SurfelSeries, path: str) -> str:
     """What decides which surfels a mesh shows."""
     status = os.stat(path)
-    settings = [getattr(series, name) for name in (*PointsProperties.__annotations__, "float_colors")]
+    settings = [getattr(series, name) for name in (*PointsProperties.__annotations__, "float_colors", "most_points")]
     return f"{path} {status.st_mtime_ns} {status.st_size} {settings}"
 
 

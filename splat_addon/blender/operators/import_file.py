@@ -9,7 +9,7 @@ from pathlib import Path
 
 import bpy
 import numpy as np
-from bpy.props import BoolProperty, EnumProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper, poll_file_object_drop
 from mathutils import Matrix
 
@@ -70,6 +70,17 @@ tell"""
         default=False,
     )
 
+    most_points: IntProperty(
+        name="At Most",
+        description=(
+            "Take so many points of a scan that has more, evenly; 0 takes all. Of LAZ and LAS the rest is not read, "
+            "and of COPC the coarsest levels are"
+        ),
+        default=0,
+        min=0,
+        soft_max=10_000_000,
+    )
+
     float_colors: EnumProperty(
         name="Float Colors",
         description="What the file's colours mean if they are floats and the file does not say it",
@@ -100,7 +111,7 @@ tell"""
     def draw(self, context):
         self.layout.use_property_split = True
         self.layout.use_property_decorate = False
-        for name in ("has_scan_look", "keeps_in_file", "is_series", "float_colors"):
+        for name in ("has_scan_look", "keeps_in_file", "is_series", "most_points", "float_colors"):
             self.layout.prop(self, name)
         header, body = self.layout.panel("surfels_import_gaussians")
         header.label(text="Gaussian Splats")
@@ -119,6 +130,9 @@ tell"""
     def execute(self, context):
         # confirmed in the file browser or a dialog; the same operator may be repeated from the redo panel
         is_asked, self._is_asked = getattr(self, "_is_asked", False), False
+        if self.keeps_in_file and self.most_points:
+            self.report({"ERROR"}, said("A file of blocks takes all points; set At Most to 0"))
+            return {"CANCELLED"}
         if self.is_series and (self.keeps_in_file or self._holds_blocks()):
             self.report({"ERROR"}, said("The files of a series are shown from memory; they cannot be files of blocks"))
             return {"CANCELLED"}
@@ -144,7 +158,7 @@ tell"""
         if self.is_series:
             path, self._frame_offset = first_shown(path, context.scene)
         if not self.keeps_in_file:
-            return FileImport(path, self, context.scene, self.float_colors)
+            return FileImport(path, self, context.scene, self.float_colors, self.most_points)
         # repeated from the redo panel, it replaces the file whose object was undone
         own = getattr(self, "_kept", "")
         kept = absolute(f"//{Path(self._name).stem}{SUFFIX}")
@@ -160,7 +174,9 @@ tell"""
             self._tell(work.notes)
             if self.is_series:
                 path = relative_path(absolute(self.filepath))
-                self._tell([begin_series(made, path, self._frame_offset, self, self.float_colors, work.path)])
+                self._tell(
+                    [begin_series(made, path, self._frame_offset, self, self.float_colors, self.most_points, work.path)]
+                )
                 # Blender draws nothing else while a render reads its next frame
                 context.scene.render.use_lock_interface = True
             self._tell_place(made, work.surfels)

@@ -1334,4 +1334,18 @@ GERMAN = {
         "{count:,} Orte des Scanners, von Einzelbild {first} bis {last}"
     ),
     "Look": "Blick",
+    "At Most": "Höchstens",
+    (
+        "Take so many points of a scan that has more, evenly; 0 takes all. Of LAZ and LAS the rest is not "
+        "read, and of COPC the coarsest levels are"
+    ): (
+        "So viele Punkte eines Scans nehmen, der mehr hat, gleichmäßig verteilt; 0 nimmt alle. Von LAZ und "
+        "LAS wird der Rest nicht gelesen, von COPC werden es die gröbsten Stufen"
+    ),
+    "A file of blocks takes all points; set At Most to 0": (
+        "Eine Datei aus Blöcken nimmt alle Punkte; Höchstens auf 0 setzen"
+    ),
+    "Points to take of a file that has more, evenly; 0 takes all": (
+        "Punkte, die von einer Datei mit mehr genommen werden, gleichmäßig verteilt; 0 nimmt alle"
+    ),
 }
