@@ -17,8 +17,10 @@ from mathutils import Vector
 
 from ...faults import sentence_of
 from ..doors import unattended, with_handlers
+from ..geometry.node_groups import nodes_in
 from ..ids import PAINTED_AS
 from ..materials.fingerprints import forget_images
+from ..materials.image_files import SEQUENCE
 from .painted_as import PaintedAs, painted_as
 from .repainting import Repaint, told_now
 from .source_record import sources_of
@@ -56,8 +58,13 @@ def out_of_date(made: bpy.types.Object) -> str | None:
 
 
 def _is_animated(material: bpy.types.Material | None) -> bool:
-    known = material and material.node_tree and material.node_tree.animation_data
-    return bool(known and (known.action or known.drivers))
+    tree = material and material.node_tree
+    if not tree:
+        return False
+    known = tree.animation_data
+    images = (getattr(node, "image", None) for node in nodes_in(tree))
+    is_moving = any(image is not None and image.source == SEQUENCE for image in images)
+    return is_moving or bool(known and (known.action or known.drivers))
 
 
 def refresh(context: bpy.types.Context) -> None:

@@ -19,6 +19,7 @@ from ...rendering.scene.sun_apart import sun_apart
 from ..materials.fingerprints import told_of_nodes
 from ..materials.graphs.channels import constant_of
 from ..materials.graphs.worlds import Sampling, radiance, read_radiance
+from ..materials.image_files import SINGLE
 from ..materials.node_trees import uses_nodes
 from ..materials.surface_shaders import Part, Shader
 from ..materials.texture_images import UnreadableError, fingerprint, linear_pixels, odd_pixels_sentence, settings_of
@@ -215,7 +216,7 @@ def _picture(socket: bpy.types.NodeSocket) -> _Picture | None:
     node = socket.links[0].from_node if socket.is_linked else None
     if node is None or node.type != "TEX_ENVIRONMENT" or node.image is None or node.mute:
         return None
-    if node.projection != "EQUIRECTANGULAR":
+    if node.projection != "EQUIRECTANGULAR" or node.image.source not in SINGLE:
         return None
     rotation = np.eye(3)
     links = node.inputs["Vector"].links

@@ -17,6 +17,7 @@ import numpy as np
 
 from ..fingerprints import checksum, plain, settings
 from ..geometry.node_groups import nodes_in
+from .image_files import TILED, frame_of, frame_path, tile_path
 from .node_trees import uses_nodes
 
 #: Properties of nodes that change no picture, beside those that all nodes have.
@@ -81,6 +82,8 @@ def _of_node(node: bpy.types.Node, known: dict) -> Iterator[str]:
     for socket in (*node.inputs, *node.outputs):
         if hasattr(socket, "default_value"):
             yield plain(socket.default_value)
+    if (frame := frame_of(getattr(node, "image", None), getattr(node, "image_user", None))) is not None:
+        yield f"frame {frame} {frame_path(node.image, frame)}"
     for name, tell in _POINTERS.items():
         if (used := getattr(node, name, None)) is not None:
             yield from tell(used)
@@ -130,7 +133,7 @@ def _kept(key: tuple, contents) -> str:
 
 
 def _files(path: str, image: bpy.types.Image) -> Iterator[bytes]:
-    paths = [path.replace("<UDIM>", str(tile.number)) for tile in image.tiles] if image.source == "TILED" else [path]
+    paths = [tile_path(path, tile.number) for tile in image.tiles] if image.source == TILED else [path]
     for each in paths:
         if os.path.isfile(each):
             with open(each, "rb") as file:

@@ -10,6 +10,7 @@ import bpy
 from ...sampling import Image
 from .. import working_space
 from ..geometry.attributes import has_surfels_beside_faces
+from .image_files import TILED, frame_of
 from .node_products import ImageSource
 from .texture_images import UnreadableError, linear_pixels
 
@@ -83,10 +84,23 @@ class MeshLayers:
         interpolation = "Closest" if node.interpolation == "Closest" else "Linear"
         is_apart = not keep_alpha and any(not link.is_muted for link in node.outputs["Alpha"].links)
         space = working_space.to_xyz().tobytes()
-        key = node.image.session_uid, keep_alpha, node.extension, interpolation, is_apart, space
+        # beyond the tiles is nothing that could be repeated
+        extension = "EXTEND" if node.image.source == TILED else node.extension
+        frame = frame_of(node.image, node.image_user)
+        key = node.image.session_uid, keep_alpha, extension, interpolation, is_apart, space, frame
         if key not in self._images:
-            self._images[key] = Image(linear_pixels(node.image, keep_alpha, is_apart), node.extension, interpolation)
+            self._forget_frames(key)
+            pixels = linear_pixels(node.image, keep_alpha, is_apart, frame)
+            self._images[key] = Image(pixels, extension, interpolation)
         return self._images[key]
+
+    def _forget_frames(self, key: tuple) -> None:
+        """Forget other frames of an image, with what was made of them. key: ends with the frame."""
+        for other in [each for each in self._images if each[:-1] == key[:-1]]:
+            gone = self._images.pop(other)
+            for made, value in [*self._images.items()]:
+                if isinstance(value, tuple) and any(gone is source for source in value[-1]):
+                    del self._images[made]
 
 
 def _index(names: list[str], name: str) -> int:

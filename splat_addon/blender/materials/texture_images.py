@@ -7,6 +7,7 @@ premultiplied. Sampling needs linear pixels with straight alpha, or opaque pixel
 
 from __future__ import annotations
 
+import os
 import zlib
 from collections.abc import Iterator
 from itertools import product
@@ -16,26 +17,47 @@ import numpy as np
 
 from ...primaries import converted
 from ...rendering.scene.numbers import MAX_RADIANCE
+from ...sampling import Image
 from .. import working_space
+from .image_files import (
+    SEQUENCE,
+    SINGLE,
+    TILED,
+    frame_image,
+    frame_path,
+    grid_of,
+    place_of,
+    tile_images,
+)
 
 
 class UnreadableError(Exception):
     """An input of a shader comes from something that cannot be read; the text ends the sentence "it comes from ..."."""
 
 
-def linear_pixels(image: bpy.types.Image, keep_alpha: bool, is_apart: bool = False) -> np.ndarray:
+def linear_pixels(
+    image: bpy.types.Image, keep_alpha: bool, is_apart: bool = False, frame: int | None = None
+) -> np.ndarray:
     """(h, w, 4) float32, linear in the file's working space, not premultiplied, row 0 at the bottom.
+
+    Of UDIM tiles it is all of them, as `grid_of` lays them out; those that are not there are magenta, as in Cycles, and
+    counted in `missing_tiles`.
 
     keep_alpha: whether the material uses the image's alpha; otherwise the result is opaque and, as in Cycles, its
     colour premultiplied, unless the image's own alpha mode says that they are not related, or its colours are data. In
     mode None an image has no alpha to keep.
     is_apart: whether something else uses the alpha that is not kept. Then Cycles divides the interpolated colour by it,
     so the colour continues beyond the rim of what is covered.
+    frame: of a sequence, from `frame_of`.
     Pixels with a number that is infinite or too large are 0 in all channels, as in Cycles, and counted in `odd_pixels`.
-    Raises UnreadableError for an image without pixels, a tiled or moving one, or a colour space that is not there.
+    Raises UnreadableError for an image without pixels, a movie, or a colour space that is not there.
     """
-    if image.source not in ("FILE", "GENERATED"):
-        raise UnreadableError(f"the {image.source.lower()} image {image.name!r}")
+    if image.source == TILED:
+        return _of_tiles(image, keep_alpha, is_apart)
+    if image.source == SEQUENCE and frame is not None:
+        return _of_frame(image, keep_alpha, is_apart, frame)
+    if image.source not in SINGLE:
+        raise UnreadableError(f"the {image.source.lower()} image {image.name!r}, which an image sequence can replace")
     pixels = _rgba(_stored_pixels(image), image)
     colors, alpha = pixels[..., :3], pixels[..., 3:]
     is_related = image.alpha_mode not in _ALPHA_IS_UNRELATED and image.colorspace_settings.name not in _DATA
@@ -59,6 +81,51 @@ def linear_pixels(image: bpy.types.Image, keep_alpha: bool, is_apart: bool = Fal
     if not has_alpha:
         alpha[...] = 1.0
     return pixels
+
+
+def _of_frame(image: bpy.types.Image, keep_alpha: bool, is_apart: bool, frame: int) -> np.ndarray:
+    with frame_image(image, frame) as still:
+        if still is None:
+            path = os.path.basename(frame_path(image, frame))
+            raise UnreadableError(f"the image sequence {image.name!r}, whose file {path!r} is not there")
+        pixels = linear_pixels(still, keep_alpha, is_apart)
+        odd_pixels[image.session_uid] = odd_pixels.pop(still.session_uid)
+    return pixels
+
+
+#: The colour that Cycles gives to what is missing.
+_MAGENTA = (1.0, 0.0, 1.0, 1.0)
+
+
+def _of_tiles(image: bpy.types.Image, keep_alpha: bool, is_apart: bool) -> np.ndarray:
+    first_column, first_row, columns, rows = grid_of(image)
+    read, odd, missing = {}, 0, []
+    for number, tile in tile_images(image):
+        if tile is None:
+            missing.append(number)
+            continue
+        read[number] = linear_pixels(tile, keep_alpha, is_apart)
+        odd += odd_pixels.pop(tile.session_uid)
+    if not read:
+        raise UnreadableError(f"the tiled image {image.name!r}, of whose tiles no file is there")
+    odd_pixels[image.session_uid], missing_tiles[image.session_uid] = odd, missing
+    height, width = (max(pixels.shape[axis] for pixels in read.values()) for axis in (0, 1))
+    made = np.empty((rows, height, columns, width, 4), np.float32)
+    made[...] = _MAGENTA
+    for number, pixels in read.items():
+        column, row = place_of(number)
+        made[row - first_row, :, column - first_column] = _enlarged(pixels, height, width)
+    return made.reshape(rows * height, columns * width, 4)
+
+
+def _enlarged(pixels: np.ndarray, height: int, width: int) -> np.ndarray:
+    """A tile in the size of the largest."""
+    if pixels.shape[:2] == (height, width):
+        return pixels
+    v, u = (np.repeat((np.arange(n) + 0.5) / n, times) for n, times in ((height, width), (width, 1)))
+    at = np.stack([np.tile(u, height), v])
+    found = Image(pixels, "EXTEND").pyramid.lookup(at, np.zeros(height * width, np.intp))
+    return found.reshape(height, width, 4)
 
 
 def _multiply_encoded(colors: np.ndarray, alpha: np.ndarray, image: bpy.types.Image, is_divided: bool) -> None:
@@ -92,9 +159,14 @@ def _as_stored(image: bpy.types.Image) -> np.ndarray:
 #: session_uid of each image -> how many of its pixels were no colours when it was last read
 odd_pixels: dict[int, int] = {}
 
+#: session_uid of each image -> the numbers of its tiles that were not there
+missing_tiles: dict[int, list[int]] = {}
+
 
 def odd_pixels_sentence(image: bpy.types.Image) -> str:
-    """What to say about pixels that were no colours; empty if there were none."""
+    """What to say about pixels that were no colours, and tiles that were not there; empty if there were none."""
+    if missing := missing_tiles.get(image.session_uid):
+        return f"The image {image.name!r} lacks the tiles {', '.join(map(str, missing))}; they are magenta"
     count = odd_pixels.get(image.session_uid, 0)
     what = f"The image {image.name!r} has infinite or too large numbers"
     return f"{what}; its pixels that count as 0: {count:,}" if count else ""

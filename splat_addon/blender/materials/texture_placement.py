@@ -8,6 +8,7 @@ import bpy
 import numpy as np
 from mathutils import Euler
 
+from .image_files import TILED, grid_of
 from .node_trees import called
 from .node_walks import linked
 from .texture_images import UnreadableError
@@ -28,7 +29,8 @@ def placement(
 
     Also how the image's coordinates are wrapped, in the form of `sampling.Texture`. Raises UnreadableError.
     """
-    matrix, wraps = np.eye(3), None
+    matrix, wraps = tiles_matrix(node.image), None
+    is_tiled = not np.array_equal(matrix, np.eye(3))
     socket, passed = node.inputs["Vector"], set()
     while (source := linked(socket)) is not None:
         by, output = source
@@ -40,6 +42,8 @@ def placement(
             socket = by.inputs["Vector"]
         elif by.bl_idname == "ShaderNodeCombineXYZ" and socket.node == node:
             wraps, socket = _wrapped(by)
+            if is_tiled:
+                raise UnreadableError("an image of tiles whose coordinates are wrapped")
         elif by.bl_idname == "ShaderNodeUVMap":
             return uv_layer(by.uv_map, mesh), _rows(matrix), wraps
         elif (by.bl_idname, output) == ("ShaderNodeTexCoord", "UV"):
@@ -50,7 +54,16 @@ def placement(
             raise UnreadableError(f"an image texture that is placed by {called(by)}")
     if socket.node != node:
         raise UnreadableError(f"an image texture that a {socket.node.bl_label} node places without coordinates")
-    return uv_layer("", mesh), None, None
+    return uv_layer("", mesh), _rows(matrix), None
+
+
+def tiles_matrix(image: bpy.types.Image | None) -> np.ndarray:
+    """(3, 3) from texture coordinates to those of all UDIM tiles together, as `linear_pixels` lays them out."""
+    matrix = np.eye(3)
+    if image is not None and image.source == TILED:
+        column, row, columns, rows = grid_of(image)
+        matrix[:2] = [1 / columns, 0, -column / columns], [0, 1 / rows, -row / rows]
+    return matrix
 
 
 def _wrapped(combine: bpy.types.ShaderNodeCombineXYZ) -> tuple[tuple[str, str], bpy.types.NodeSocket]:

@@ -10,7 +10,7 @@ from ..mesh_layers import GENERATED, NORMAL, POINTINESS, POSITION, TRUE_NORMAL
 from ..node_products import ImageSource
 from ..node_walks import Node, Socket, linked
 from ..texture_images import UnreadableError
-from ..texture_placement import uv_layer
+from ..texture_placement import tiles_matrix, uv_layer
 from .reading import REST, GraphReading, Value, reads, unreadable
 from .vector_readers import as_direction, inverse_of
 
@@ -180,6 +180,12 @@ def _image(tree: GraphReading, node: Node, output: str) -> Value:
     keeps_alpha = output == "Alpha"
     image = tree.layers.image(ImageSource(node), keeps_alpha, any_projection=True)
     vector = coordinates(tree, node.inputs["Vector"], lambda tree: uv(tree, ""))
+    to_tiles = tiles_matrix(node.image)
+    if not np.array_equal(to_tiles, np.eye(3)):
+        if node.projection != "FLAT":
+            raise unreadable(node, f"that projects UDIM tiles as a {node.projection.title()}")
+        flat = np.insert(to_tiles, 2, 0, axis=1)[[0, 1]]
+        vector = tree.vector("transformed", vector, settings=(np.vstack([flat, [0, 0, 1, 0]]).astype(np.float32),))
     if node.projection == "BOX":
         looked_up = tree.add("box image", vector, derived(tree, NORMAL), settings=(image, node.projection_blend))
     else:

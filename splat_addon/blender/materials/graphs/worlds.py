@@ -13,6 +13,7 @@ import numpy as np
 from ....rendering.scene.equirectangular import directions_at, equirectangular_directions, pixels_around
 from ....sampling import Image
 from ....shading_nodes import Graph, Inputs, evaluate
+from ..image_files import frame_of
 from ..mesh_layers import GENERATED, POSITION, MeshLayers
 from ..node_walks import Node
 from ..surface_shaders import Shader
@@ -154,11 +155,12 @@ def _finer(pixels: np.ndarray, times: int) -> np.ndarray:
 def _environment(tree: GraphReading, node: Node, output: str) -> Value:
     if node.image is None:
         raise unreadable(node, "without an image")
-    key = "environment", node.image.session_uid, node.interpolation == "Closest"
+    frame = frame_of(node.image, node.image_user)
+    key = "environment", node.image.session_uid, node.interpolation == "Closest", frame
     kept = tree.layers.kept_images
     if key not in kept:
         interpolation = "Closest" if node.interpolation == "Closest" else "Linear"
-        kept[key] = Image(linear_pixels(node.image, keep_alpha=False), "REPEAT", interpolation)
+        kept[key] = Image(linear_pixels(node.image, keep_alpha=False, frame=frame), "REPEAT", interpolation)
     if isinstance(tree.layers, _Directions):
         tree.layers.rows = max(tree.layers.rows, min(kept[key].pixels.shape[0], _MOST_ROWS))
     vector = coordinates(tree, node.inputs["Vector"], lambda tree: derived(tree, POSITION))
