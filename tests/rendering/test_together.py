@@ -196,13 +196,26 @@ def ball() -> TriangleMesh:
     return TriangleMesh(made.vertices, made.faces)
 
 
-def test_steps_are_the_levels_of_a_hierarchy():
+def test_steps_are_ever_coarser_cuts_of_a_hierarchy():
     surfels = sample_mesh(ball(), resolution=24)
     levels = build_hierarchy(surfels)
     places = np.arange(len(surfels) + len(levels))[::-1]
     made = steps.make_steps(levels, places, (slice(0, 10),))
     assert made.counts[0] == len(surfels) and (np.diff(made.counts) < 0).all() and made.counts[-1] < 10
     assert made.errors[0].tolist() == [0, 0] and (np.diff(made.errors, axis=0) >= 0).all()
-    assert sorted(made.numbers[: made.last[0]]) == sorted(places[: len(surfels)])
-    for first, clipped, last in zip(made.first, made.clipped, made.last, strict=True):
+    under = stood_for(levels)
+    for first, clipped, last, (error, _) in zip(made.first, made.clipped, made.last, made.errors, strict=True):
         assert (made.numbers[first:clipped] < 10).all() and (made.numbers[clipped:last] >= 10).all()
+        drawn = places[made.numbers[first:last]]
+        assert sorted(surfel for entry in drawn for surfel in under[entry]) == list(range(len(surfels)))
+        assert levels.errors[drawn[drawn >= len(surfels)] - len(surfels)].max(initial=0) == error
+    assert len(made.counts) > len(levels.cells) + 1
+
+
+def stood_for(levels) -> dict[int, set[int]]:
+    """The surfels that each entry of a hierarchy stands for."""
+    under = {surfel: {surfel} for surfel in range(levels.surfels)}
+    below, start, counts = iter(levels.entries), levels.surfels, iter(levels.counts)
+    for entry, count in zip(levels.entries[start:], counts, strict=True):
+        under.setdefault(int(entry), set()).update(*(under[int(next(below))] for _ in range(count)))
+    return under

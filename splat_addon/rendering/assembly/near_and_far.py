@@ -14,7 +14,9 @@ import numpy as np
 from ..scene import Instance, Placed, PolygonInstance, Scene
 from ..scene.camera import Camera
 from ..scene.far_reaching import least_length, pieces, reaching
+from ..scene.polygons import Polygons
 from ..scene.strays import without_strays
+from ..scene.table import InstanceTable
 
 #: Views whose scenes are kept: the faces of a panorama, and their next ones.
 _VIEWS = 12
@@ -24,20 +26,21 @@ class NearAndFar:
     """The scenes for the views that one renderer draws: the same objects as long as a view stays."""
 
     def __init__(self):
-        self._of_scene: tuple[Scene, float, list[Placed]] | None = None
+        self._of_scene: tuple[Scene, np.ndarray, list[Placed]] | None = None
         self._scenes: dict[tuple, tuple[Scene, Scene]] = {}
         self._apart: WeakKeyDictionary = WeakKeyDictionary()
         self._near: WeakKeyDictionary = WeakKeyDictionary()
 
     def resolved(self, scene: Scene, camera: Camera) -> Scene:
         """The scene for a view: the same object if nothing is far in it."""
+        table = scene.table
         if self._of_scene is None or self._of_scene[0] is not scene:
-            stray = [each for each in (*scene.surfels, *scene.polygons) if len(self._parts(each)) > 1]
-            self._of_scene = scene, max(map(_length, scene.polygons), default=0.0), stray
-        least, (_, longest, stray) = least_length(camera), self._of_scene
-        if not (longest > least or stray):
+            stray = table.taken(table.of_kinds(lambda placed: len(self._parts(placed)) > 1))
+            self._of_scene = scene, _lengths(table), list(stray.placed)
+        least, (_, lengths, stray) = least_length(camera), self._of_scene
+        reach = [table.placed[row] for row in np.flatnonzero(lengths > least).tolist()]
+        if not (reach or stray):
             return scene
-        reach = [each for each in scene.polygons if _length(each) > least]
         key = id(scene), camera.matrix_world.tobytes(), camera.near, camera.is_orthographic, least
         if key not in self._scenes:
             parts = {each: self._taken_apart(each, camera, each in reach) for each in {*reach, *stray}}
@@ -86,9 +89,7 @@ class NearAndFar:
         return of_shape[key]
 
 
-def _length(instance: PolygonInstance) -> float:
-    """The length of an instance's longest triangle, or more, world units."""
-    shape = instance.polygons
-    if not len(shape) or instance.is_flattened:
-        return 0.0
-    return float(instance.stretches[0]) * shape.longest_edge
+def _lengths(table: InstanceTable) -> np.ndarray:
+    """(n,) the length of each one's longest triangle, or more, world units; 0 of surfels and of what is flattened."""
+    longest = np.array([shape.longest_edge if isinstance(shape, Polygons) else 0.0 for shape in table.shapes])
+    return np.where(table.are_flattened, 0.0, table.stretches[:, 0] * longest[table.shape_of])

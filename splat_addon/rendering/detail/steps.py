@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Levels of detail of many instances: each is drawn as one whole level of its hierarchy, chosen for all at once.
+"""Levels of detail of many instances: each is drawn as one of a few cuts of its hierarchy, chosen for all at once.
 
-A cut fits a view of one object best, but it is of that object alone. Of an instance that is far away for its size, all
-parts need the same level, and instances at one level are drawn together.
+A view's own cut fits one object best, but it is of that object alone. Of an instance that is far away for its size, all
+parts may be off by the same length, and instances with one such cut are drawn together.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -22,14 +23,17 @@ LEAST_TOGETHER = 8
 #: Instances with more triangles than this are drawn one by one: a call for each is little beside them.
 MOST_TRIANGLES = 1 << 13
 
+#: Doublings of the error from one cut to the next, and the most cuts between the finest and the coarsest.
+_OCTAVE, _MOST_LIMITS = 0.5, 48
+
 
 class Steps(NamedTuple):
-    """The levels of a hierarchy that have few enough entries, the finest first.
+    """Cuts through a hierarchy that have few enough entries, each as coarse as its error allows, the finest first.
 
-    numbers: storage indices of what they draw, one level after the other, in each of which clipped ones come first.
-    first, clipped, last: (k,) of each level, where it begins, its clipped ones end, and it ends. errors: (k, 2) the
-    largest of each, object units, increasing; without those of what it shows in the second column. radii: (k,) the
-    largest half-axis of what is merged in each, object units, increasing.
+    numbers: storage indices of what they draw, one cut after the other, in each of which clipped ones come first.
+    first, clipped, last: (k,) of each cut, where it begins, its clipped ones end, and it ends. errors: (k, 2) the
+    largest of each, object units, increasing, 0 for the surfels themselves; without those of what it shows in the
+    second column. radii: (k,) the largest half-axis of what is merged in each, object units, increasing.
     """
 
     numbers: np.ndarray
@@ -41,16 +45,14 @@ class Steps(NamedTuple):
 
     @property
     def counts(self) -> np.ndarray:
-        """(k,) what each level draws."""
+        """(k,) what each cut draws."""
         return self.last - self.first
 
 
 def make_steps(levels: Hierarchy, places: np.ndarray, clipped: tuple[slice, ...]) -> Steps:
     """places: storage index of each surfel and then each node. clipped: where clipped ones are in the storage."""
     numbers, errors, radii, clipped_counts = [], [], [], []
-    for entries in _levels(levels):
-        if len(entries) > MOST_TRIANGLES:
-            continue
+    for entries in _cuts(levels):
         own = places[entries]
         are_clipped = np.logical_or.reduce([(own >= part.start) & (own < part.stop) for part in clipped])
         numbers.append(np.concatenate([own[are_clipped], own[~are_clipped]]))
@@ -67,14 +69,42 @@ def make_steps(levels: Hierarchy, places: np.ndarray, clipped: tuple[slice, ...]
     return Steps(every, first, clipped_end, first + sizes, rising, np.maximum.accumulate(np.array(radii)))
 
 
-def _levels(levels: Hierarchy):
-    """The entries of each level: those of successive entries of the next level follow one another."""
-    start, size, counts = 0, levels.surfels, levels.counts
-    while size:
-        yield levels.entries[start : start + size]
-        start, below = start + size, size
-        size = int(np.searchsorted(np.cumsum(counts), below)) + 1 if len(counts) else 0
-        counts = counts[size:]
+def _cuts(levels: Hierarchy) -> Iterator[np.ndarray]:
+    """The entries of each cut that has few enough: what is off by no more than an error and belongs to nothing else
+    that is not, from the surfels to what is coarsest."""
+    own = np.concatenate([np.zeros(levels.surfels, np.float32), levels.errors.max(axis=1)])
+    every, above = _levels(levels)
+    errors = own[every]
+    # an entry that waits for a larger cell is its own parent
+    parents = np.append(errors, np.inf)[above]
+    for limit in (0.0, *_limits(np.unique(own[levels.surfels :]))):
+        entries = every[(errors <= limit) & (parents > limit)]
+        if len(entries) <= MOST_TRIANGLES:
+            yield entries
+
+
+def _limits(errors: np.ndarray) -> list[float]:
+    """The largest of increasing errors in each of a row of equal ratios."""
+    if not len(errors):
+        return []
+    octaves = np.log2(errors / errors[0])
+    ratio = max(_OCTAVE, octaves[-1] / _MOST_LIMITS)
+    return errors[np.append(np.diff(np.floor(octaves / ratio)) > 0, True)].tolist()
+
+
+def _levels(levels: Hierarchy) -> tuple[np.ndarray, np.ndarray]:
+    """The entries of all levels, those of successive entries of the next level following one another; and where that of
+    the next level is among them, or one past the last if there is none."""
+    counts, sizes = levels.counts, [levels.surfels]
+    at = 0
+    while at < len(counts):
+        size = int(np.searchsorted(np.cumsum(counts[at:]), sizes[-1])) + 1
+        at += size
+        sizes.append(size)
+    total = sum(sizes)
+    above = np.full(total, total)
+    above[: total - sizes[-1]] = np.repeat(np.arange(levels.surfels, total), counts)
+    return levels.entries[:total], above
 
 
 def may_step(instance: Instance, count: int) -> bool:

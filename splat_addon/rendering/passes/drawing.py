@@ -69,9 +69,11 @@ def _whole(tile: TileContext, batch: Items) -> tuple[tuple[str, ...], int, int, 
     """What is drawn of each instance: variants of programs, and where its splats begin, clipped ones end, and all
     end."""
     surfels = batch.item(0).instance.surfels
-    if not batch.step:
+    if batch.step is None:
         return (), 0, surfels.clipped_count, len(surfels)
     steps = tile.steps(batch.item(0).instance)
+    if not steps.errors[batch.step, 0]:
+        return (), 0, surfels.clipped_count, len(surfels)
     return ("cut",), *(int(ends[batch.step]) for ends in (steps.first, steps.clipped, steps.last))
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a view draws of objects that have levels of detail: a cut of its own of each, or a whole level of it."""
+"""What a view draws of objects that have levels of detail: a cut of its own of each, or one that many share."""
 
 from __future__ import annotations
 

@@ -66,6 +66,8 @@ class Placed:
     is_merged: ClassVar[bool] = False
     #: surfels never do
     reaches: ClassVar[bool] = False
+    #: what it was copied from by `placed_at`
+    copied_from: ClassVar[Placed | None] = None
 
     def __post_init__(self):
         if self.light_set not in range(MAX_LIGHT_SETS):
@@ -254,7 +256,7 @@ def placed_at(placed: Sequence[Placed], matrices: np.ndarray) -> list[Placed]:
     made = []
     for one, matrix in zip(placed, matrices, strict=True):
         copied = object.__new__(type(one))
-        copied.__dict__.update(values[one], matrix_world=matrix)
+        copied.__dict__.update(values[one], matrix_world=matrix, copied_from=one)
         made.append(copied)
     return made
 

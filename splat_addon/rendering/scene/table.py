@@ -351,7 +351,7 @@ def _sizes(shape) -> tuple[float, float, float]:
 
 def _kind_key() -> Callable[[Placed], tuple]:
     """The function that gives equal keys to instances of one kind."""
-    names, by_value, by_id = {}, {}, {}
+    names, by_value, by_id, of_origins = {}, {}, {}, {}
 
     def number(value: tuple) -> int:
         # most instances of an object have the very same tuple of materials, and comparing values takes longer
@@ -360,6 +360,13 @@ def _kind_key() -> Callable[[Placed], tuple]:
         return by_id[id(value)]
 
     def key(one: Placed) -> tuple:
+        if (origin := one.copied_from) is None:
+            return found(one)
+        if id(origin) not in of_origins:
+            of_origins[id(origin)] = found(origin)
+        return of_origins[id(origin)]
+
+    def found(one: Placed) -> tuple:
         kind = type(one)
         if kind not in names:
             names[kind] = tuple(f.name for f in fields(one) if f.name not in _APART)
