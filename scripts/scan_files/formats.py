@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writes LAS, LAZ, PTX, PCD and SPZ."""
+"""Writes LAS, LAZ, COPC, PTX, PCD, SPZ and glTF."""
 
 from __future__ import annotations
 
 import gzip
 import io
+import json
 import struct
 
 import numpy as np
@@ -113,6 +114,46 @@ def copc_file(nodes: list[np.ndarray], levels: list[int], pages: int = 1) -> byt
     for user, number, data in records:
         stream.write(struct.pack("<H16sHH32s", 0, user, number, len(data), b"") + bytes(data))
     return stream.getvalue()
+
+
+def gltf_of_gaussians(
+    positions: np.ndarray, sizes: np.ndarray, turns: np.ndarray, opacities: np.ndarray, harmonics: np.ndarray
+) -> tuple[dict, bytes]:
+    """The description and the buffer of a glTF file of Gaussians. turns: x y z w. opacities: (N, 1)."""
+    given = {"SCALE": sizes, "ROTATION": turns, "OPACITY": opacities, "SH_DEGREE_0_COEF_0": harmonics}
+    arrays = {"POSITION": positions} | {f"KHR_gaussian_splatting:{name}": array for name, array in given.items()}
+    views, accessors, data = [], [], b""
+    for array in arrays.values():
+        views.append({"buffer": 0, "byteOffset": len(data), "byteLength": array.nbytes})
+        is_float = array.dtype.kind == "f"
+        accessors.append({"bufferView": len(views) - 1, "componentType": 5126 if is_float else 5121,
+                          "normalized": not is_float, "count": len(array),
+                          "type": {1: "SCALAR", 3: "VEC3", 4: "VEC4"}[array.shape[1]]})  # fmt: skip
+        data += array.tobytes() + bytes(-array.nbytes % 4)
+    primitive = {
+        "mode": 0,
+        "attributes": {name: number for number, name in enumerate(arrays)},
+        "extensions": {"KHR_gaussian_splatting": {"kernel": "ellipse", "colorSpace": "srgb_rec709_display"}},
+    }
+    return {
+        "asset": {"version": "2.0"},
+        "scene": 0,
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [primitive]}],
+        "accessors": accessors,
+        "bufferViews": views,
+        "buffers": [{"byteLength": len(data)}],
+    }, data
+
+
+def glb_file(description: dict, data: bytes) -> bytes:
+    """A binary glTF file."""
+    text = json.dumps(description).encode()
+    text += b" " * (-len(text) % 4)
+    data += bytes(-len(data) % 4)
+    head = struct.pack("<4sII", b"glTF", 2, 28 + len(text) + len(data))
+    return head + struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(data), b"BIN\0") + data
 
 
 def ptx_scan(points: np.ndarray, columns: int, matrix: np.ndarray) -> str:

@@ -10,7 +10,7 @@ of scans has one file, which hands out such columns in portions (`clouds`). `poi
 
 from .clouds import ReadingCancelled
 from .columns import FLOAT_COLORS
-from .contents import SUFFIXES, point_pieces, read_contents
+from .contents import SHARED_SUFFIXES, SUFFIXES, point_pieces, read_contents
 from .following import followed
 from .gaussian_ply import write_gaussian_ply
 from .gaussians import DEFAULT_FLATNESS, Gaussians, flat_gaussians, harmonic_colors
@@ -26,6 +26,7 @@ __all__ = [
     "ATTRIBUTES",
     "DEFAULT_FLATNESS",
     "FLOAT_COLORS",
+    "SHARED_SUFFIXES",
     "SUFFIXES",
     "Gaussians",
     "PlyPortions",

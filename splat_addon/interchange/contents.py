@@ -8,7 +8,7 @@ from dataclasses import replace
 from functools import partial
 from types import ModuleType
 
-from . import e57, las, pcd, ptx, spz, xyz
+from . import e57, gltf, las, pcd, ptx, spz, xyz
 from .clouds import COLOR, Cloud, Progress, read_all
 from .columns import FLOAT_COLORS, Columns, has
 from .gaussians import DEFAULT_FLATNESS, Gaussians
@@ -22,6 +22,12 @@ from .text_rows import HEAD
 #: name of a format -> its reader: `is_this(head)` tells it by the first bytes, `opened(path)` gives a `Cloud`.
 #: Text with nothing that tells it but its numbers comes last.
 _SCANS = {"LAS, LAZ, COPC": las, "E57": e57, "PCD": pcd, "PTX": ptx, "text such as PTS, XYZ and CSV": xyz}
+
+#: module of a format of Gaussians, which has `is_this(head)` -> how a file is read
+_GAUSSIANS = {spz: spz.read_spz, gltf: gltf.read_gltf}
+
+#: Ends of names of files that Blender's own importer may be meant to read.
+SHARED_SUFFIXES = (".glb", ".gltf")
 
 #: Usual ends of the names of files that can be read.
 SUFFIXES = (".ply", ".spz", ".las", ".laz", ".e57", ".ptx", ".pts", ".xyz", ".txt", ".asc", ".csv", ".pcd")
@@ -53,8 +59,9 @@ def read_contents(
         return (
             _points(cloud, float_colors, progress, most) if cloud else read_ply_contents(path, flatness, float_colors)
         )
-    if spz.is_this(head):
-        return spz.read_spz(path, flatness)
+    for others, read in _GAUSSIANS.items():
+        if others.is_this(head):
+            return read(path, flatness)
     reader = _reader(head)
     cloud = las.opened(path, most) if reader is las else reader.opened(path)
     return _points(cloud, float_colors, progress, most)
@@ -67,7 +74,7 @@ def point_pieces(
     and errors are those of `read_contents`."""
     _check_float_colors(float_colors)
     head = _head(path)
-    if spz.is_this(head) or (is_ply(head) and opened_points(path) is None):
+    if any(others.is_this(head) for others in _GAUSSIANS) or (is_ply(head) and opened_points(path) is None):
         return None
     opened = opened_points if is_ply(head) else _reader(head).opened
     return PointPieces(partial(opened, path), float_colors, progress)
@@ -88,7 +95,7 @@ def _reader(head: bytes) -> ModuleType:
     for reader in _SCANS.values():
         if reader.is_this(head):
             return reader
-    known = ", ".join(["PLY", "SPZ", *_SCANS])
+    known = ", ".join(["PLY", "SPZ", "glTF with Gaussian splats", *_SCANS])
     raise ValueError(f"This is no file of points that can be read, which are {known}.{other_kind(head)}")
 
 

@@ -41,9 +41,13 @@ def is_this(head: bytes) -> bool:
 
 def read_spz(path: str | os.PathLike, flatness: float = DEFAULT_FLATNESS) -> Gaussians:
     """The Gaussians of the file: see `flat_gaussians`. Raises ValueError with a sentence, OSError."""
-    size = os.path.getsize(path)
     with open(path, "rb") as stream:
-        packed = stream.read()
+        return spz_gaussians(stream.read(), flatness)
+
+
+def spz_gaussians(packed: bytes, flatness: float = DEFAULT_FLATNESS) -> Gaussians:
+    """The Gaussians in the bytes of a file. Raises ValueError with a sentence."""
+    size = len(packed)
     head = _unpacked(packed, _HEADER.size)
     if len(head) < _HEADER.size:
         raise ValueError("The SPZ file ends in its header; it is cut off.")
@@ -63,12 +67,12 @@ def read_spz(path: str | os.PathLike, flatness: float = DEFAULT_FLATNESS) -> Gau
         columns.append(np.frombuffer(data, np.uint8, count * width, start).reshape(count, width))
         start += count * width
     places, opacities, colors, scales, turns = columns
-    x, y, z = _positions(places, version, fraction).T
+    positions, rotations = z_up(_positions(places, version, fraction), _quaternions(turns, version))
     said = (f"Took {count:,} Gaussians from a compressed file, which rounds places, sizes and colours",)
     return flat_gaussians(
-        np.stack([x, -z, y], axis=1),
+        positions,
         np.exp(scales / 16.0 - 10.0),
-        _turned(_quaternions(turns, version)),
+        rotations,
         harmonic_colors((colors / 255.0 - 0.5) / _COLOR_SCALE),
         opacities[:, 0] / 255.0,
         view_dependent=_HARMONICS[degree],
@@ -113,8 +117,10 @@ def _quaternions(packed: np.ndarray, version: int) -> np.ndarray:
     return made[:, [3, 0, 1, 2]]
 
 
-def _turned(quaternions: np.ndarray) -> np.ndarray:
-    """(N, 4) float32 quaternions, turned so that z is up."""
+def z_up(positions: np.ndarray, quaternions: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(N, 3) places and (N, 4) float32 quaternions w x y z, turned so that z is up where y was."""
+    x, y, z = positions.T
+    places = np.stack([x, -z, y], axis=1)
     (aw, ax), (w, x, y, z) = _UP[:2], quaternions.T
     made = [aw * w - ax * x, aw * x + ax * w, aw * y - ax * z, aw * z + ax * y]
-    return np.stack(made, axis=1).astype(np.float32)
+    return places, np.stack(made, axis=1).astype(np.float32)

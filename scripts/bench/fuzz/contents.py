@@ -32,9 +32,9 @@ def ball(count: int, **fields) -> Surfels:
     )
 
 
-def surfels_of(path: Path) -> Iterator[np.ndarray]:
-    """The arrays of the surfels that a file gives, as the import makes them of it."""
-    found = read_contents(path)
+def surfels_of(path: Path, most: int = 0) -> Iterator[np.ndarray]:
+    """The arrays of the surfels that a file gives, as the import makes them of it. most: points to take."""
+    found = read_contents(path, most=most)
     if isinstance(found, Points):
         places = found.positions - offset_for(found.positions)
         surfels, _ = surfels_from_points(places, found.normals, found.radii, found.colors)

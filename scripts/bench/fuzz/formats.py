@@ -335,4 +335,6 @@ FORMATS = {
     "text": scan_formats.text,
     "pcd": scan_formats.pcd,
     "spz": scan_formats.spz,
+    "gltf": scan_formats.gltf,
+    "copc": scan_formats.copc,
 }

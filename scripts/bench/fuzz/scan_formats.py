@@ -3,16 +3,28 @@
 
 from __future__ import annotations
 
+import base64
 import gzip
+import json
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
-from bench.fuzz.changes import changed_bytes, changed_text, some
+from bench.fuzz.changes import changed_bytes, changed_json, changed_text, some
 from bench.fuzz.contents import ball, surfels_of
 from scan_files.e57 import Scan, content_of, e57_file, floats, pose, whole, with_checksums
-from scan_files.formats import las_file, las_rows, pcd_file, ptx_scan, spz_file
+from scan_files.formats import (
+    copc_file,
+    glb_file,
+    gltf_of_gaussians,
+    las_file,
+    las_rows,
+    pcd_file,
+    ptx_scan,
+    spz_file,
+)
+from splat_addon.interchange import point_pieces
 
 
 class ScanFiles:
@@ -29,8 +41,14 @@ class ScanFiles:
         return changed_bytes(random, sound)
 
     def read(self, file: bytes, random) -> Iterator[np.ndarray]:
+        """Whole, thinned, or a portion at a time."""
         self._path.write_bytes(file)
-        yield from surfels_of(self._path)
+        kind = random.random()
+        if kind < 0.15 and (pieces := point_pieces(self._path)) is not None:
+            for points in pieces:
+                yield points.positions[:0]
+        else:
+            yield from surfels_of(self._path, most=60 if kind < 0.3 else 0)
 
 
 class TextFiles(ScanFiles):
@@ -94,6 +112,49 @@ class SpzFiles(ScanFiles):
         if random.random() < 0.3:
             return changed_bytes(random, sound)
         return gzip.compress(changed_bytes(random, gzip.decompress(sound)), 1, mtime=0)
+
+
+class GltfFiles(ScanFiles):
+    """glTF, binary and not, whose description is damaged more often than its numbers."""
+
+    def __init__(self, folder: Path, sound: list[tuple[dict, bytes]]):
+        super().__init__(folder, ".glb", sound)
+
+    def changed(self, random, sound: tuple[dict, bytes]) -> bytes:
+        description, data = sound
+        kind = random.random()
+        if kind < 0.6:
+            description = changed_json(random, description)
+        elif kind < 0.8:
+            data = changed_bytes(random, data)
+        file = glb_file(description, data)
+        if random.random() < 0.3 and isinstance(description, dict):
+            uri = "data:;base64," + base64.b64encode(data).decode()
+            file = json.dumps(description | {"buffers": [{"byteLength": len(data), "uri": uri}]}).encode()
+        return file if kind < 0.8 else changed_bytes(random, file)
+
+
+def gltf(folder: Path) -> GltfFiles:
+    surfels = ball(100)
+    sizes = np.column_stack([surfels.scales, np.full(100, 1e-3)]).astype(np.float32)
+    turns = surfels.rotations[:, [1, 2, 3, 0]]
+    plain = gltf_of_gaussians(
+        surfels.positions, sizes, turns, surfels.colors[:, 3:].copy(), surfels.colors[:, :3].copy()
+    )
+    packed = spz_file(surfels.positions, turns.astype(np.float64), 2, 0)
+    compressed = json.loads(json.dumps(plain[0]))
+    compressed["meshes"][0]["primitives"][0]["extensions"]["KHR_gaussian_splatting"]["extensions"] = {
+        "KHR_gaussian_splatting_compression_spz_2": {"bufferView": 0}
+    }
+    compressed["bufferViews"] = [{"buffer": 0, "byteLength": len(packed)}]
+    compressed["nodes"] = [{"children": [1], "scale": [2, 2, 2]}, {"mesh": 0, "rotation": [0, 0, 0.6, 0.8]}]
+    return GltfFiles(folder, [plain, (compressed, packed)])
+
+
+def copc(folder: Path) -> LasFiles:
+    rows, levels = las_rows(6, 150), [0, 1, 1, 2]
+    nodes = [rows[:20], rows[20:70], rows[70:100], rows[100:]]
+    return LasFiles(folder, ".copc.laz", [copc_file(nodes, levels), copc_file(nodes, levels, 2)])
 
 
 def las(folder: Path) -> LasFiles:

@@ -13,7 +13,7 @@ from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper, poll_file_object_drop
 from mathutils import Matrix
 
-from ...interchange import SUFFIXES
+from ...interchange import SHARED_SUFFIXES, SUFFIXES
 from ...streaming import id_of
 from ...streaming.layout import MAGIC, SUFFIX
 from ..conversion.file_import import FileImport
@@ -51,7 +51,9 @@ tell"""
 
     filename_ext = ".ply"
     filepath: path_property("reading from", is_forgotten=True)
-    filter_glob: StringProperty(default=";".join(f"*{suffix}" for suffix in (*SUFFIXES, SUFFIX)), options={"HIDDEN"})
+    filter_glob: StringProperty(
+        default=";".join(f"*{suffix}" for suffix in (*SUFFIXES, *SHARED_SUFFIXES, SUFFIX)), options={"HIDDEN"}
+    )
     keeps_in_file: BoolProperty(
         name="Keep in a File",
         description=(
