@@ -8,6 +8,7 @@ were a PLY file, so that `points` understands all formats alike.
 | red green blue | display colours, integers of 8 or 16 bits |
 | nx ny nz | normals |
 | intensity, classification, return_number, number_of_returns, gps_time | as scanners give them |
+| extra:NAME | whatever else a file gives by a name |
 | scan | number of the scan in the file, from 0; `Cloud.places` says where its scanner stood |
 """
 
@@ -30,6 +31,9 @@ Progress = Callable[[int, float], bool]
 PORTION, PORTION_BYTES = 1 << 18, 1 << 25
 
 COLOR = ("red", "green", "blue")
+
+#: Before the name of a column that only its file knows, and that becomes an attribute.
+EXTRA = "extra:"
 
 
 class ReadingCancelled(Exception):

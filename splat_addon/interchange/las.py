@@ -16,7 +16,8 @@ from typing import BinaryIO
 import numpy as np
 
 from . import copc
-from .clouds import COLOR, PORTION, PORTION_BYTES, Cloud, Table, without
+from .clouds import COLOR, EXTRA, PORTION, PORTION_BYTES, Cloud, Table, without
+from .las_records import Extra, read_records
 from .laz import chunk_size, decompressed_chunk, decompressor
 
 SIGNATURE = b"LASF"
@@ -39,10 +40,6 @@ _CHUNK, _DENSER = 50_000, 8
 #: Bits of the point format that say that points are compressed.
 _COMPRESSED = 0xC0
 
-#: The head of a variable length record.
-_RECORD = np.dtype([("reserved", "<u2"), ("user", "S16"), ("number", "<u2"), ("length", "<u2"), ("description", "S32")])
-_LAZ_USER, _LAZ_NUMBER = b"laszip encoded", 22204
-
 _PLACE = [("X", "<i4"), ("Y", "<i4"), ("Z", "<i4"), ("intensity", "<u2")]
 _OLD = [*_PLACE, ("returns", "u1"), ("class", "u1"), ("angle", "i1"), ("user", "u1"), ("source", "<u2")]
 _NEW = [*_PLACE, ("returns", "u1"), ("flags", "u1"), ("class", "u1"), ("user", "u1"), ("angle", "<i2")]
@@ -63,7 +60,8 @@ _OLD_CLASS, _OLD_WITHHELD, _NEW_WITHHELD = 0x1F, 0x80, 0x04
 @dataclass(frozen=True)
 class _Header:
     """points: where they begin. count: how many the file says. record: numpy's type of one. format: 0 to 10. scale,
-    offset: (3,). laszip: the description of the compression, None where there is none."""
+    offset: (3,), to metres. laszip: the description of the compression, None where there is none. extras: fields of
+    the extra bytes. said: sentences about units."""
 
     points: int
     count: int
@@ -72,6 +70,8 @@ class _Header:
     scale: np.ndarray
     offset: np.ndarray
     laszip: bytes | None
+    extras: tuple[Extra, ...]
+    said: tuple[str, ...]
 
 
 def is_this(head: bytes) -> bool:
@@ -83,7 +83,7 @@ def opened(path: str | os.PathLike, most: int = 0) -> Cloud:
     Raises ValueError with a sentence, OSError."""
     with open(path, "rb") as stream:
         header = _read_header(stream, os.path.getsize(path))
-    cloud = Cloud(iter(()), count=header.count, is_thinned=0 < most < header.count)
+    cloud = Cloud(iter(()), said=[*header.said], count=header.count, is_thinned=0 < most < header.count)
     cloud.portions = _portions(path, header, cloud.said, most if cloud.is_thinned else 0)
     return cloud
 
@@ -97,8 +97,9 @@ def _portions(path: str | os.PathLike, header: _Header, said: list[str], most: i
             yield share, without(table, deleted)
     if withheld:
         said.append(f"Left out {withheld:,} points that the file marks as deleted (withheld)")
-    if extra := header.record["extra"].itemsize:
-        said.append(f"Passed over {extra} bytes of each point that the file adds to its point format (extra bytes)")
+    unknown = header.record["extra"].itemsize - sum(each.kind.itemsize for each in header.extras)
+    if unknown:
+        said.append(f"Passed over {unknown} bytes of each point that the file adds to its point format (extra bytes)")
 
 
 def _data(stream: BinaryIO, size: int, header: _Header, most: int) -> Iterator[tuple[float, bytes]]:
@@ -160,6 +161,9 @@ def _table(rows: np.ndarray, header: _Header) -> tuple[Table, np.ndarray]:
     for name in ("gps_time", *COLOR):
         if name in rows.dtype.names:
             table[name] = rows[name].astype(rows[name].dtype.newbyteorder("="))
+    if header.extras:
+        extra = np.ascontiguousarray(rows["extra"]).view(np.uint8).reshape(len(rows), -1)
+        table |= {EXTRA + each.name: each.of(extra) for each in header.extras}
     flags, withheld = (rows["flags"], _NEW_WITHHELD) if is_new else (rows["class"], _OLD_WITHHELD)
     return table, (flags & withheld) != 0
 
@@ -188,21 +192,11 @@ def _read_header(stream: BinaryIO, size: int) -> _Header:
     if fields["minor"] == 4 and fields["size"] >= _SIZE_14 and len(head) == _SIZE_14:
         count = int.from_bytes(head[_COUNT_14 : _COUNT_14 + 8], "little") or count
     record = np.dtype([*POINT_FORMATS[number], ("extra", f"V{length - fields_of_point.itemsize}")])
-    laszip = None
-    if fields["format"] & _COMPRESSED:
-        laszip = _laszip_record(stream, int(fields["size"]), int(fields["points"]), int(fields["vlrs"]))
-    return _Header(int(fields["points"]), count, record, number, scale, offset, laszip)
-
-
-def _laszip_record(stream: BinaryIO, start: int, end: int, count: int) -> bytes:
-    """The description of the compression, among the records before the points."""
-    stream.seek(start)
-    for _ in range(count):
-        head = stream.read(_RECORD.itemsize)
-        if len(head) < _RECORD.itemsize or stream.tell() > end:
-            break
-        record = np.frombuffer(head, _RECORD)[0]
-        data = stream.read(int(record["length"]))
-        if record["user"] == _LAZ_USER and record["number"] == _LAZ_NUMBER:
-            return data
-    raise ValueError("The LAZ file does not say how its points are compressed; it is damaged.")
+    start, end = int(fields["size"]), int(fields["points"])
+    records = read_records(stream, start, end, int(fields["vlrs"]), record["extra"].itemsize)
+    is_packed = bool(fields["format"] & _COMPRESSED)
+    if is_packed and records.laszip is None:
+        raise ValueError("The LAZ file does not say how its points are compressed; it is damaged.")
+    metres = np.array([records.units[0], records.units[0], records.units[1]])
+    laszip = records.laszip if is_packed else None
+    return _Header(end, count, record, number, scale * metres, offset * metres, laszip, records.extras, records.said)

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from .clouds import EXTRA
 from .columns import NORMAL, POSITION, has, matrix
 from .gaussian_forms import color_and_opacity, lacks_of_gaussians
 
@@ -27,7 +28,7 @@ ATTRIBUTES = {
 class Points:
     """positions: (N, 3) float64.
     normals: (N, 3), radii: (N,), colors: (N, 4) scene-linear; None if the file lacks them.
-    attributes: (N,) by a name in `ATTRIBUTES`, in the file's type; those that the file has.
+    attributes: (N,) by a name in `ATTRIBUTES`, or one that only the file knows, in the file's type; those that it has.
     places: scan number -> (3,) float64 where its scanner stood, if the file says so.
     said: sentences about how they were read.
 
@@ -91,11 +92,12 @@ def points(columns: dict[str, np.ndarray], floats: str = "DISPLAY") -> Points:
 
 
 def _attributes(columns: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """(N,) by a name in `ATTRIBUTES`. Columns that are 0 throughout say nothing."""
+    """(N,) by a name in `ATTRIBUTES`, or that only the file knows. Of the former, those that are 0 throughout say
+    nothing."""
     plain = {re.sub(r"^scalar_|[_ ]", "", name.lower()): name for name in columns}
     found = {}
     for attribute, names in ATTRIBUTES.items():
         given = next((plain[name] for name in names if name in plain), None)
         if given is not None and columns[given].any():
             found[attribute] = columns[given]
-    return found
+    return found | {name.removeprefix(EXTRA): columns[name] for name in columns if name.startswith(EXTRA)}

@@ -61,7 +61,7 @@ def test_a_damaged_file_is_one_sentence(ply, head, body, sentence):
 @pytest.mark.parametrize("content", [b"", b"plyish\n", b"\x89PNG\r\n", b"\0" * 1000])
 def test_another_kind_of_file_is_told_so(tmp_path, content):
     (tmp_path / "a.ply").write_bytes(content)
-    with pytest.raises(ValueError, match="no file of points that can be read, which are PLY, SPZ, LAS"):
+    with pytest.raises(ValueError, match="no file of points that can be read, which are PLY, SPZ, glTF"):
         read_contents(tmp_path / "a.ply")
 
 

@@ -13,7 +13,8 @@ _TIME = "gps_time"
 
 
 def write_scan_attributes(mesh: bpy.types.Mesh, attributes: dict[str, np.ndarray], rows: np.ndarray) -> None:
-    """Add attributes to a mesh of surfels: integers as INT, others as FLOAT. attributes: (N,) by name, of the points.
+    """Add attributes to a mesh of surfels, under another name if it has one of it: integers as INT, others as FLOAT.
+    attributes: (N,) by name, of the points.
     rows: which point each surfel was made of."""
     for name, values in attributes.items():
         values = values[rows]
