@@ -15,9 +15,15 @@ vec3 glass_tint;      // what a crossing keeps
 vec3 glass_passed;    // share of what comes through that leaves the surface
 vec3 glass_normal;
 
+vec3 facing_axis_of(vec3 along) {
+  return normalize(cross(abs(along.z) < 0.7 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0), along));
+}
+
 const int GLASS_CROSSINGS = 10;
-const int GLASS_VISITS = 2048;
+// Boxes that are looked at for one ray, at most: llvmpipe ends all loops of a shader after 65,535 turns.
+const int GLASS_VISITS = 1500;
 const float FAR = 1e30;
+const float THINNEST = 1e-10;  // square of the sine of a triangle's angle, at least
 
 // What a ray meets.
 struct GlassMet {
@@ -35,6 +41,12 @@ float fresnel_of(float cosine, float ratio) {  // ratio: of the indices, behind 
   float across = (cosine - ratio * behind) / (cosine + ratio * behind);
   float along = (ratio * cosine - behind) / (ratio * cosine + behind);
   return 0.5 * (across * across + along * along);
+}
+
+// Behind a surface that faces the ray; along it where nothing is refracted.
+vec3 bent(vec3 along, vec3 against, float cosine, float ratio) {
+  float square = 1.0 - (1.0 - cosine * cosine) / (ratio * ratio);
+  return normalize(along / ratio + against * (cosine / ratio - sqrt(max(square, 0.0))));
 }
 
 vec4 pane_texel(int number, int first_row) {
@@ -57,7 +69,8 @@ void meet_glass(int number, vec3 from, vec3 along, float side, inout GlassMet me
   if (!(away > 0.0)) return;
   vec3 at = from + along * away - a.xyz;
   float uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), au = dot(at, u), av = dot(at, v);
-  float area = uu * vv - uv * uv;
+  float area = dot(flat_normal, flat_normal);
+  if (!(area > THINNEST * uu * vv)) return;
   vec2 place = vec2(vv * au - uv * av, uu * av - uv * au) / area;
   float weight = is_disc ? 1.0 - dot(place, place) : min(min(place.x, place.y), 1.0 - place.x - place.y) + 1e-5;
   if (!(weight >= 0.0)) return;
@@ -77,7 +90,7 @@ GlassMet met_glass(vec3 from, vec3 along, float side) {
   int leaves = int(frame.glass_leaves), node = 1;
   float weights = 0.0;
   vec3 normals = vec3(0.0);
-  for (int visits = 0; visits < GLASS_VISITS && node > 0; visits++) {
+  for (int visits = 0; visits < GLASS_VISITS; visits++) {
     vec3 low = (pane_texel(2 * node, 0).xyz - from) * inverse, high = (pane_texel(2 * node + 1, 0).xyz - from) * inverse;
     vec3 first = min(low, high), last = max(low, high);
     float enters = max(max(first.x, first.y), max(first.z, 0.0)), leaves_at = min(min(last.x, last.y), last.z);
@@ -89,9 +102,10 @@ GlassMet met_glass(vec3 from, vec3 along, float side) {
       int number = (node - leaves) * GLASS_LEAF;
       for (int k = 0; k < GLASS_LEAF; k++) meet_glass(number + k, from, along, side, met, weights, normals);
     }
-    // to the next node that is not below this one
-    while ((node & 1) == 1) node >>= 1;
-    if (node > 0) node += 1;
+    // to the next node that is not below this one; behind the last there is none
+    node += 1;
+    node /= node & -node;
+    if (node == 1) break;
   }
   met.normal = normals;
   return met;
@@ -183,6 +197,15 @@ bool met_in_picture(GlassWay way, out vec3 found, out bool is_open) {
   return false;
 }
 
+// A texel that is looked up, over the spread of a ray.
+const float GLASS_TEXEL = 0.7;
+
+// Roughness of a surface that reflects as wide a lobe.
+float roughness_of(float texel) {
+  return min(sqrt(texel / (2.0 * GLASS_TEXEL)), 1.0);
+}
+
+// texel: the width that is looked up, pixels.
 vec4 behind_mapped(vec2 place, float texel) {
   float number = clamp(log2(max(texel, 1.0)), 0.0, float(PICTURE_MAPS - 1));
   int finer = int(number);
@@ -190,44 +213,70 @@ vec4 behind_mapped(vec2 place, float texel) {
   return number > float(finer) ? mix(seen, behind_at(finer + 1, place), number - float(finer)) : seen;
 }
 
-const int GLASS_TAPS = 12;
-const float GOLDEN_TURN = 2.39996323;  // golden angle
-// Below this width in pixels, one texel has all that is seen.
-const float SHARP = 0.7;
+// What a ray may meet. texel: the angle that is looked up, and that beyond a distance.
+struct GlassRay {
+  vec3 from;
+  vec3 along;
+  float reach;  // FAR without an end
+  vec2 texel;
+  float beyond;
+};
 
-// What a rough surface shows of the picture around a place. Taps have equal shares of the lobe (GGX), whose tails are
-// long, and each is as wide as its share of the plane. width: of the lobe, pixels.
-vec4 behind_blurred(vec2 place, float width) {
-  if (width < SHARP) return behind_at(0, place);
-  vec4 total = vec4(0.0);
-  for (int i = 0; i < GLASS_TAPS; i++) {
-    float within = (float(i) + 0.5) / float(GLASS_TAPS), turn = float(i) * GOLDEN_TURN;
-    float radius = width * sqrt(within / (1.0 - within));
-    float side = sqrt(3.14159265 / float(GLASS_TAPS)) * (radius * radius + width * width) / width;
-    total += behind_mapped(place + radius * vec2(cos(turn), sin(turn)), side);
-  }
-  return total / float(GLASS_TAPS);
-}
-
-// Light that comes from there. spread: of the ray's directions, radians.
-bool seen_along(vec3 from, vec3 along, float reach, float spread, out vec3 light, out bool is_open) {
-  vec3 start = (frame.from_glass * vec4(from, 1.0)).xyz, way = mat3(frame.from_glass) * along, found;
+// The light that a ray meets in the picture; whether it meets any. is_open: whether it ends before nothing.
+bool seen_along(GlassRay ray, out vec3 light, out bool is_open) {
+  vec3 start = (frame.from_glass * vec4(ray.from, 1.0)).xyz, way = mat3(frame.from_glass) * ray.along, found;
   is_open = false;
   light = vec3(0.0);
   if (!(view.is_parallel > 0.5) && !(start.z < 0.0)) return false;
   vec3 first = in_picture(start);
   if (any(lessThan(first.xy, vec2(0.0))) || any(greaterThan(first.xy, frame.glass_size))) return false;
-  GlassWay stretch = picture_way(start, way, reach);
+  GlassWay stretch = picture_way(start, way, ray.reach);
   if (!met_in_picture(stretch, found, is_open)) {
-    is_open = is_open && reach >= FAR && way.z < 0.0 && way_depth(stretch.end) >= 0.5 * FAR;
+    is_open = is_open && ray.reach >= FAR && way.z < 0.0 && way_depth(stretch.end) >= 0.5 * FAR;
     return false;
   }
-  float gone = abs(found.z + start.z) / max(abs(way.z), 0.1 * frame.glass_scale) * frame.glass_scale;
-  float width = spread * gone / (view.is_parallel > 0.5 ? 1.0 : found.z) * frame.glass_window.w;
-  vec4 seen = behind_blurred(found.xy, width);
+  float away = abs(found.z + start.z) / max(abs(way.z), 0.1 * frame.glass_scale);
+  float texel = away > ray.beyond ? ray.texel.y : ray.texel.x, depth = view.is_parallel > 0.5 ? 1.0 : found.z;
+  vec4 seen = behind_mapped(found.xy, texel * away * frame.glass_scale / depth * frame.glass_window.w);
   light = seen.rgb;
-  if (seen.a < 1.0) light += (1.0 - seen.a) * sent_reflection(normalize(way), sqrt(0.5 * spread));
+  if (seen.a < 1.0) light += (1.0 - seen.a) * sent_reflection(normalize(way), roughness_of(texel));
   return true;
+}
+
+// Light from beyond all glass. place: of the surface that is lit, view space.
+vec3 light_along(GlassRay ray, vec3 place) {
+  vec3 light;
+  bool is_open;
+  if (seen_along(ray, light, is_open)) return light;
+  vec3 direction = normalize(mat3(frame.from_glass) * ray.along);
+  if (is_open) return sent_reflection(direction, roughness_of(ray.texel.y));
+  vec3 away = (frame.from_glass * vec4(ray.from, 1.0)).xyz - place;
+  return world_through(away, direction, roughness_of(ray.texel.y));
+}
+
+const int GLASS_TAPS = 12;
+const float GOLDEN_TURN = 2.39996323;
+// From this spread on, radians, rays are told apart.
+const float FROSTED = 0.01;
+
+// What a rough surface lets through around a ray, whose spread is that of its lobe (GGX), with long tails. Rays have
+// equal shares of it, and each is as wide as its share. more: square of the spread beyond a distance.
+vec3 light_around(GlassRay ray, float spread, float more, vec3 place) {
+  vec3 u = facing_axis_of(ray.along), v = cross(ray.along, u), along = ray.along, total = vec3(0.0);
+  for (int i = 0; i < GLASS_TAPS; i++) {
+    float within = (float(i) + 0.5) / float(GLASS_TAPS), turn = float(i) * GOLDEN_TURN + frame.glass_turn;
+    float slope = spread * sqrt(within / (1.0 - within));
+    float side = 1.77245385 * (slope * slope + spread * spread) / (spread * sqrt(float(GLASS_TAPS)));
+    ray.along = normalize(along + slope * (u * cos(turn) + v * sin(turn)));
+    ray.texel = vec2(side, sqrt(side * side + more));
+    total += light_along(ray, place);
+  }
+  return total / float(GLASS_TAPS);
+}
+
+// The light that surfaces behind the first reflect comes from all around: its ways are not followed.
+vec3 returned(vec3 lost, vec3 normal) {
+  return max(max(lost.r, lost.g), lost.b) > 0.0 ? lost * world_through(vec3(0.0), normal, 1.0) : vec3(0.0);
 }
 
 vec3 through_glass(vec3 position, vec3 normal) {
@@ -237,17 +286,26 @@ vec3 through_glass(vec3 position, vec3 normal) {
   float root = sqrt(clamp(glass_material.z, 0.0, 0.98)), ior = (1.0 + root) / (1.0 - root);
   float alpha = glass_material.x * glass_material.x, spread2 = alpha * alpha * (ior - 1.0) * (ior - 1.0) / (ior * ior);
   if (dot(facing, along) > -1e-3) facing = normalize(facing - along * (dot(facing, along) + 1e-3));
-  along = refract(along, facing, 1.0 / ior);
-  vec3 share = glass_tint, light = vec3(0.0);
-  float side = 1.0;
+  along = bent(along, facing, -dot(facing, along), ior);
+  vec3 share = glass_tint, lost = vec3(0.0), seen;
+  float side = 1.0, frosted2 = 0.0;
   bool is_open = false;
+  GlassRay before;  // where a rough surface has been left
   for (int i = 0; i < GLASS_CROSSINGS; i++) {
     GlassMet met = met_glass(from, along, side);
-    vec3 seen;
-    if (seen_along(from, along, met.away, sqrt(spread2), seen, is_open)) return light + share * seen;
+    if (frosted2 == 0.0) {
+      if (side < 0.0 && spread2 > FROSTED * FROSTED) {
+        frosted2 = spread2;
+        before = GlassRay(from, along, FAR, vec2(0.0), met.away);
+      } else {
+        vec2 texel = vec2(GLASS_TEXEL * sqrt(spread2));
+        if (seen_along(GlassRay(from, along, met.away, texel, FAR), seen, is_open)) return share * seen + returned(lost, normal);
+      }
+    }
     if (met.away >= FAR) break;
     from += along * met.away;
-    vec3 against = normalize(met.normal) * -sign(dot(met.normal, along) + 1e-30);
+    vec3 against = met.normal * inversesqrt(max(dot(met.normal, met.normal), 1e-20));
+    if (dot(against, along) > 0.0) against = -against;
     float ratio = side > 0.0 ? 1.0 / met.ior : met.ior, cosine = clamp(-dot(against, along), 0.0, 1.0);
     float reflected = fresnel_of(cosine, ratio), rough = met.roughness * met.roughness, bends = rough * (met.ior - 1.0);
     if (reflected >= 1.0) {
@@ -255,15 +313,19 @@ vec3 through_glass(vec3 position, vec3 normal) {
       spread2 += 4.0 * rough * rough;
       continue;
     }
-    along = normalize(refract(along, against, 1.0 / ratio));
+    along = bent(along, against, cosine, ratio);
+    lost += share * reflected;
     share *= (1.0 - reflected) * met.tint;
     spread2 = spread2 / (ratio * ratio) + bends * bends / (side > 0.0 ? 1.0 : ratio * ratio);
     side = -side;
   }
-  vec3 away = mat3(frame.from_glass) * along, direction = normalize(away);
-  float roughness = min(sqrt(0.5 * sqrt(spread2)), 1.0);
+  vec3 light = returned(lost, normal);
+  if (frosted2 > 0.0) return light + share * light_around(before, sqrt(frosted2), max(spread2 - frosted2, 0.0), position);
+  vec3 direction = normalize(mat3(frame.from_glass) * along);
+  float roughness = roughness_of(GLASS_TEXEL * sqrt(spread2));
   if (is_open) return light + share * sent_reflection(direction, roughness);
-  return light + share * world_through((frame.from_glass * vec4(from, 1.0)).xyz - position, direction, roughness);
+  vec3 away = (frame.from_glass * vec4(from, 1.0)).xyz - position;
+  return light + share * world_through(away, direction, roughness);
 }
 
 void glass_dim(inout Lobe lobe, vec3 base, float metallic) {
@@ -271,7 +333,7 @@ void glass_dim(inout Lobe lobe, vec3 base, float metallic) {
   float share = numbers.y * (1.0 - metallic);
   lobe.diffuse_albedo *= 1.0 - share;
   glass_passed = share * max(1.0 - lobe.specular_albedo, vec3(0.0));
-  glass_tint = pow(max(base, vec3(0.0)), vec3(numbers.z / max(numbers.y, 1e-6)));
+  glass_tint = pow(max(base, vec3(1e-9)), vec3(numbers.z / max(numbers.y, 1e-6)));
   glass_normal = lobe.normal;
 }
 

@@ -147,6 +147,26 @@ void coat_mirror(inout vec3 radiance) {
   radiance += coat.specular_albedo * world_reflection(reflected, coat.roughness);
 }
 
+#part translucency
+vec3 sent_on;  // albedo of what leaves on the other side
+vec3 lit_normal;
+
+void translucency_dim(inout Lobe lobe, vec3 base, float metallic) {
+  float share = finish_numbers(2).w;
+  sent_on = lobe.diffuse_albedo * share;
+  lobe.diffuse_albedo *= 1.0 - share;
+  lit_normal = lobe.normal;
+}
+
+void translucency_mirror(inout vec3 radiance) {
+  radiance += sent_on * world_irradiance(-lit_normal);
+}
+
+#part translucency, covered
+void translucency_cover(inout Lobe lobe) {
+  sent_on *= passed_on;
+}
+
 #part specular_tint, lights
 void specular_tint_edge(inout vec3 fresnel, Lobe lobe, float vh) {
   fresnel -= lobe.edge * vh * pow(1.0 - vh, 6.0);
@@ -226,4 +246,26 @@ void lights_lit(inout vec3 radiance, Lobe lobe, vec3 position, vec3 normal) {
     add_light(radiance, lobe, light);
     #hook over(radiance, light)
   }
+}
+
+#part translucency, lights, shadows
+void translucency_turned() {
+  shadow_plane = -shadow_plane;
+}
+
+#part translucency, lights
+// The other side, without what it reflects.
+void translucency_lit(inout vec3 radiance, Lobe lobe, vec3 position, vec3 normal) {
+  Lobe other = lobe;
+  other.normal = -normal;
+  other.diffuse_albedo = sent_on;
+  other.specular_albedo = other.scattered = other.f0 = other.edge = vec3(0.0);
+  other.f90 = 0.0;
+  #hook turned()
+  int count = int(frame.light_count);
+  for (int i = 0; i < count; i++) {
+    Incident light = incident(i, position, -normal);
+    add_light(radiance, other, light);
+  }
+  #hook turned()
 }

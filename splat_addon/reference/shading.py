@@ -73,6 +73,12 @@ def principled_radiance(surface: Surface, direction, lights: list[Incident], wor
         lobes = [lobes[0].times(let_through), coat.times(sheen.let_through)]
     radiance = surface.emission * let_through
     if finish is not None:
+        share = finish[:, 11:12]
+        radiance = radiance + _sent_on(
+            replace(lobes[0], diffuse=lobes[0].diffuse * share), surface, view, lights, world
+        )
+        lobes[0] = replace(lobes[0], diffuse=lobes[0].diffuse * (1 - share))
+    if finish is not None:
         radiance = radiance + sheen.radiance(normal, view, lights, world)
     for lobe in lobes:
         reflected = mean_direction(lobe.roughness, nv, view, normal)
@@ -80,6 +86,16 @@ def principled_radiance(surface: Surface, direction, lights: list[Incident], wor
         radiance = radiance + lobe.specular * world.reflection(reflected, lobe.roughness)
         for light in lights:
             radiance = radiance + _reflected(lobe, light, normal, view, nv)
+    return radiance
+
+
+def _sent_on(lobe: _Lobe, surface: Surface, view, lights: list[Incident], world: WorldLight) -> np.ndarray:
+    """(n, 3) radiance of the diffuse light that falls on the other side of a surface."""
+    none, behind = np.zeros_like(lobe.diffuse), -surface.normal
+    lobe = replace(lobe, f0=none, f90=none[:, :1], specular=none, scattered=none, edge=none)
+    radiance = lobe.diffuse * world.irradiance(behind)
+    for light in lights:
+        radiance = radiance + _reflected(lobe, light, behind, view, np.maximum(dot(behind, view), MIN_VIEW_COSINE))
     return radiance
 
 

@@ -59,13 +59,15 @@ _MOST = float(np.finfo(np.float32).max) / MAX_SAMPLES
 
 
 def mended(arrays: dict[str, np.ndarray]) -> int:
-    """Make the pixels black and empty in which a number is not finite, in place; returns how many there are.
+    """Make the pixels black and empty in which a number is not finite, in copies that take the place of the arrays;
+    returns how many there are.
 
     Numbers that a scene may have can be too large for float32 together. Cycles makes such pixels black, too.
     """
     odd = reduce(np.logical_or, map(_are_odd, arrays.values()), False)
     count = int(np.count_nonzero(odd))
-    for name, values in arrays.items() if count else ():
+    for name in tuple(arrays) if count else ():
+        values = arrays[name] = arrays[name].copy()  # what was read of one tile may be the device's own
         values[odd] = EMPTY_DEPTH if name == "depth" else 0
         if name == "color":
             values[odd, 3] = 1

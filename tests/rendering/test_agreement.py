@@ -173,7 +173,7 @@ def finished(scene, camera):
     scene, camera = lit(scene, camera)
     finishes = (
         Finish(specular_tint=(1.0, 0.3, 0.1), coat=0.8, coat_roughness=0.3, coat_ior=1.8, coat_tint=(1.0, 0.6, 0.2)),
-        Finish(specular_tint=(0.2, 1.0, 0.4), sheen=0.7, sheen_roughness=0.4, sheen_tint=(0.2, 0.5, 1.0)),
+        Finish((0.2, 1.0, 0.4), sheen=0.7, sheen_roughness=0.4, sheen_tint=(0.2, 0.5, 1.0), translucency=0.6),
     )
     first, second = (
         replace(i, materials=tuple(replace(m, finish=finish, emission=(0.1, 0.1, 0.2)) for m in i.materials))
@@ -186,8 +186,9 @@ def with_cards(scene, camera):
     """The scene with surfels whose backs are hidden, and some that lie below the surface that lights them."""
     first, *others = scene.surfels
     random = np.random.default_rng(5).random((2, len(first.surfels)))
+    leaf = (Material(finish=Finish(translucency=0.5)),)
     cards = replace(first.surfels, hidden_back=np.rint(random[0]), lift=0.3 * random[1])
-    return replace(shadowed(scene, camera)[0], surfels=(replace(first, shape=cards), *others)), camera
+    return replace(shadowed(scene, camera)[0], surfels=(replace(first, shape=cards, materials=leaf), *others)), camera
 
 
 def bent(scene, camera):

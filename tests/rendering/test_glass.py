@@ -6,13 +6,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from splat_addon.reference import scenes
+from splat_addon.reference import extremes, scenes
 from splat_addon.reference.brdf import dot, specular_albedo, unit
 from splat_addon.reference.glass import fresnel, met_first, through_glass
 from splat_addon.rendering import (
     Camera,
     Finish,
     Instance,
+    Light,
     Material,
     PolygonInstance,
     Scene,
@@ -101,7 +102,8 @@ def true_picture():
     mirrored, _ = specular_albedo(np.full(len(places), 0.03), -dot(along, normals), f0, np.ones((len(places), 1)))
     seen = CAMERA.pixels_of((at - CAMERA.matrix_world[:3, 3]) @ CAMERA.matrix_world[:3, :3])
     sees = np.abs(seen - 24).max(axis=1) < 28
-    return hits, sees, mirrored * SKY + (1 - mirrored) * share * color
+    # what is reflected inside comes from all around, of which the sky is all that is known
+    return hits, sees, mirrored * SKY + (1 - mirrored) * (share * color + (TINT - share / TINT) * SKY)
 
 
 @pytest.mark.parametrize(("kind", "share", "typical"), [("polygons", 0.93, 0.01), ("surfels", 0.85, 0.02)])
@@ -161,3 +163,23 @@ def test_a_frame_without_glass_is_planned_as_before():
     assert [p.parts for p in on.passes] == [p.parts for p in off.passes]
     assert "glass" not in str([p.parts for p in on.passes])
     assert "it is drawn opaque: refraction is switched off" in str(plan(scene(), CAMERA, Settings()))
+
+
+@pytest.mark.parametrize("kind", ["polygons", "surfels"])
+@pytest.mark.parametrize("casts", [False, True])
+def test_a_translucent_sheet_is_lit_by_what_is_behind_it(kind, casts, render):
+    """Lambert's law holds on the other side for the share that is translucent."""
+    paper = Material(roughness=1.0, ior=1.0, finish=Finish(translucency=0.25))
+    corners, color = [(-3, 0, -3), (3, 0, -3), (3, 0, 3), (-3, 0, 3)], (0.5, 0.8, 0.2, 1.0)
+    if kind == "polygons":
+        square = make_polygons(corners, [(0, 1, 2), (0, 2, 3)], color=color)
+        sheet = {"polygons": [PolygonInstance(square, materials=(paper,))]}
+    else:
+        x, z = (axis.ravel() * 0.2 for axis in np.mgrid[-15:16, -15:16])
+        places = np.stack([x, 0 * x, z], axis=1)
+        discs = extremes.discs(places, (0.25, 0, 0), (0, 0, 0.25))
+        sheet = {"surfels": [Instance(replace(discs, colors=np.tile(color, (len(x), 1))), materials=(paper,))]}
+    for direction, share in (((0, 1, -1), 0.75), ((0, -1, -1), 0.25)):
+        sun = Light("sun", energy=np.pi * np.sqrt(2), direction=direction, casts_shadow=casts)
+        ours = render(Scene(**sheet, lights=(sun,)), CAMERA, Settings(method="quad")).color[16:32, 16:32, :3]
+        assert ours.reshape(-1, 3) == pytest.approx(np.tile(np.array(color[:3]) * share, (256, 1)), rel=0.02)

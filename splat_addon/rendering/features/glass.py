@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ..plan.graph import Part
@@ -46,12 +48,16 @@ def _window(tile) -> tuple[float, float, float, float]:
     return left, bottom, seen.size[0] / (right - left), seen.size[1] / (top - bottom)
 
 
+#: Successive samples turn the rays behind rough glass by fractions of a turn that fill it evenly (the golden ratio).
+_TURN = math.pi * (math.sqrt(5) - 1)
+
 VALUES = {
     "to_glass": ("mat4", _to_glass),
     "from_glass": ("mat4", lambda tile: np.linalg.inv(_to_glass(tile))),
     "glass_window": ("vec4", _window),
     "glass_size": ("vec2", lambda tile: tile.shared.glass.size),
     "glass_scale": ("float", lambda tile: tile.view.scale),
+    "glass_turn": ("float", lambda tile: _TURN * tile.camera.sample % (2 * math.pi)),
     "glass_leaves": ("float", lambda tile: tile.shared.glass.surfaces.leaves),
     "glass_box_rows": ("float", lambda tile: tile.shared.glass.surfaces.box_rows),
 }
