@@ -294,26 +294,30 @@ class _Taken(Sequence):
 def make_table(placed: Iterable[Placed]) -> InstanceTable:
     """The table of instances, of which those are left out that have nothing to show."""
     every = tuple(placed)
-    slots = _slots(every)
-    numbers = [number for number, one in enumerate(every) if len(one.shape)]
-    placed = tuple(every[number] for number in numbers)
-    kinds, kind_of = _numbered(map(_kind_key(), placed))
-    shapes, shape_of = _numbered(id(one.shape) for one in placed)
-    every_shape = tuple(placed[row].shape for row in shapes)
+    first, of = _alike(one if one.copied_from is None else one.copied_from for one in every)
+    some = [every[row] for row in first.tolist()]
+    are_there = np.array([len(one.shape) > 0 for one in some], bool)
+    numbers = np.flatnonzero(are_there[of])
+    slots, of = _slots(every, some, of)[numbers], (np.cumsum(are_there) - 1)[of[numbers]]
+    some = [one for one in some if len(one.shape)]
+    placed = tuple(every[number] for number in numbers.tolist())
+    kinds, kind_of = _numbered(map(_kind_key(), some))
+    shapes, shape_of = _numbered(id(one.shape) for one in some)
+    every_shape = tuple(some[row].shape for row in shapes)
     bounds = [shape.local_bounds for shape in every_shape]
     nothing = float("nan")
-    splits = [(one.split_distance or nothing, one.split_length or nothing) for one in placed]
+    splits = [(one.split_distance or nothing, one.split_length or nothing) for one in some]
     return InstanceTable(
         placed=placed,
         numbers=np.arange(len(placed)),
-        kind_of=kind_of,
-        every_kind=tuple(placed[row] for row in kinds),
-        shape_of=shape_of,
+        kind_of=kind_of[of],
+        every_kind=tuple(some[row] for row in kinds),
+        shape_of=shape_of[of],
         shapes=every_shape,
         matrices=np.array([one.matrix_world for one in placed], np.float64).reshape(-1, 4, 4),
-        light_sets=np.array([one.light_set for one in placed], int),
-        splits=np.array(splits, np.float64).reshape(-1, 2),
-        slots=slots[numbers],
+        light_sets=np.array([one.light_set for one in some], int)[of],
+        splits=np.array(splits, np.float64).reshape(-1, 2)[of],
+        slots=slots,
         origins=np.array([shape.origin for shape in every_shape], np.float64).reshape(-1, 3),
         low=np.array([low for low, _ in bounds]).reshape(-1, 3),
         high=np.array([high for _, high in bounds]).reshape(-1, 3),
@@ -351,7 +355,7 @@ def _sizes(shape) -> tuple[float, float, float]:
 
 def _kind_key() -> Callable[[Placed], tuple]:
     """The function that gives equal keys to instances of one kind."""
-    names, by_value, by_id, of_origins = {}, {}, {}, {}
+    names, by_value, by_id = {}, {}, {}
 
     def number(value: tuple) -> int:
         # most instances of an object have the very same tuple of materials, and comparing values takes longer
@@ -360,13 +364,6 @@ def _kind_key() -> Callable[[Placed], tuple]:
         return by_id[id(value)]
 
     def key(one: Placed) -> tuple:
-        if (origin := one.copied_from) is None:
-            return found(one)
-        if id(origin) not in of_origins:
-            of_origins[id(origin)] = found(origin)
-        return of_origins[id(origin)]
-
-    def found(one: Placed) -> tuple:
         kind = type(one)
         if kind not in names:
             names[kind] = tuple(f.name for f in fields(one) if f.name not in _APART)
@@ -387,13 +384,21 @@ def _numbered(keys: Iterable) -> tuple[list[int], np.ndarray]:
     return first, np.array(of, np.int64)
 
 
-def _slots(every: tuple[Placed, ...]) -> np.ndarray:
-    """(n, 2) as in `InstanceTable`; 0 means nothing. An instance that is there twice has the same numbers."""
-    if not every:
-        return np.zeros((0, 2))
-    first, of = _numbered(map(id, every))
-    counts = np.array([len(every[row].materials) for row in first])
-    starts = 1 + np.concatenate([[0], np.cumsum(counts)[:-1]])
-    own = np.stack([starts, counts - 1], axis=1)[of]
-    own[[one.is_holdout for one in every]] = 0
+def _alike(of: Iterable) -> tuple[np.ndarray, np.ndarray]:
+    """`_numbered` of which object each is, for thousands that are few different ones."""
+    _, first, number = np.unique(np.array([id(one) for one in of], np.int64), return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    return first[order], np.argsort(order)[number]
+
+
+def _slots(every: tuple[Placed, ...], some: list[Placed], of: np.ndarray) -> np.ndarray:
+    """(n, 2) as in `InstanceTable`; 0 means nothing. An instance that is there twice has the same numbers.
+
+    some, of: one of those that differ in their places only, and (n,) which of these each is like.
+    """
+    first, number = _alike(every)
+    counts = np.array([len(one.materials) for one in some], int)[of[first]]
+    starts = 1 + np.cumsum(counts) - counts
+    own = np.stack([starts, counts - 1], axis=1)[number]
+    own[np.array([one.is_holdout for one in some], bool)[of]] = 0
     return own
