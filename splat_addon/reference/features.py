@@ -55,6 +55,7 @@ def _lights():
     two_sets = under(*ring(2, receivers=(0,)), *ring(2, receivers=(1,)))
     yield row("4 points, linked to other objects", "4 points", together(linked, two_sets), under(*ring(4)))
     yield row("ambient occlusion", "none", settings(ambient_occlusion=1.0), is_quick=True)
+    yield row("bounced light, gathered before", "none", together(LIT, settings(bounces=3)), LIT)
     metal = shots.materials(Material(roughness=0.2, metallic=1.0))
     yield row("reflections, drawn before", "metal", together(metal, settings(reflections=True)), metal, is_quick=True)
     clear = shots.materials(Material(roughness=0.0, finish=Finish(transmission=1.0)))

@@ -7,7 +7,10 @@ from collections.abc import Set
 from dataclasses import fields
 from weakref import ref
 
+import numpy as np
+
 from .scene import Scene
+from .scene.light import Light
 
 #: Fields of instances that change nothing in a picture.
 _UNSEEN = frozenset({"matrix_world", "light_set", "name", "index", "split_distance", "split_length", "may_change"})
@@ -34,4 +37,8 @@ def _value(value):
     """What is compared of a value: itself, or which object it is."""
     if isinstance(value, tuple):
         return tuple(map(_value, value))
+    if isinstance(value, Light):
+        return tuple(map(_value, _fields(value, frozenset())))
+    if isinstance(value, np.ndarray):
+        return value.tobytes()
     return value if value.__hash__ is not object.__hash__ else ref(value)

@@ -185,17 +185,29 @@ class Renderer:
             yield frame
 
     def _planned(
-        self, scene: Scene, camera: Camera, settings: Settings, repeated=1, is_repeatable=False, whole=None, **options
+        self,
+        scene: Scene,
+        camera: Camera,
+        settings: Settings,
+        repeated=1,
+        is_repeatable=False,
+        whole: Scene | None = None,
+        eye: np.ndarray | None = None,
+        **options,
     ) -> Shared:
         """The plan of a picture and all that its samples share. repeated: how many samples follow one another. whole:
-        the scene that lights what is drawn, if that is only a part. options: of `plan`."""
+        the scene that lights what is drawn, if that is only a part. eye: where the viewer is, if the camera is a
+        probe's or behind a mirror. options: of `plan`."""
+        eye = camera.matrix_world[:3, 3] if eye is None else eye
         whole, scene = whole or scene, self.near_and_far.resolved(scene, camera)
         before = no_history(scene) if is_repeatable else history(scene, self._drawn)
         frame_plan = plan(scene, camera, settings, history=before, **options)
         check_samplers(frame_plan, self.device.max_samplers)
-        seen = self._reflected(scene, camera, settings, frame_plan, is_repeatable=is_repeatable, whole=whole)
+        seen = self._reflected(scene, camera, settings, frame_plan, is_repeatable=is_repeatable, whole=whole, eye=eye)
         is_bounced = frame_plan.found.get(bounced_light.missing) == ""
-        light = self.bounced.of(whole, settings.bounces) if is_bounced and frame_plan.passes else None
+        light = None
+        if is_bounced and frame_plan.passes:
+            light = self.bounced.of(whole, eye, settings.bounces)
         return Shared(scene, frame_plan, settings, repeated, before, *seen, light)
 
     def _reflected(self, scene: Scene, camera: Camera, settings: Settings, frame_plan: FramePlan, **options):

@@ -411,6 +411,7 @@ CASES = [
     ("torus", "quad", {"shading": "flat", "eye_dome": EyeDome()}),
     ("mirrored", "quad", {"reflections": True}),
     *(("glass", method, {"refraction": True, "reflections": True}) for method in ("quad", "mip")),
+    ("mirrored", "quad", {"bounces": 1}),
     *(("polygon_shadows", method, {"lights_splats": True}) for method in ("quad", "mip")),
     ("large_lamp_shadows", "quad", {}),
     ("many_finishes", "mip", {}),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shadows, ambient occlusion, reflections and eye-dome lighting."""
+"""Shadows, ambient occlusion, bounced light, reflections and eye-dome lighting."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from bpy.props import BoolProperty, FloatProperty, IntProperty
 from ...rendering.scene.eye_dome import MAX_RADIUS as MAX_EYE_DOME_RADIUS
 from ...rendering.scene.eye_dome import EyeDome
 from ...rendering.scene.numbers import MAX_FACTOR
-from ...rendering.settings import MAX_SHADOW_RESOLUTION, Settings
+from ...rendering.settings import MAX_BOUNCES, MAX_SHADOW_RESOLUTION, Settings
 
 
 class LightProperties:
@@ -40,6 +40,22 @@ class LightProperties:
         min=0.0,
         soft_max=100.0,
         default=0.0,
+    )
+    use_bounced_light: BoolProperty(
+        name="Bounced Light",
+        description=(
+            "Let surfaces light one another, and keep the world's light from one another. It is computed for the whole "
+            "scene when that has changed, which takes some seconds, and takes the place of Ambient Occlusion"
+        ),
+        default=False,
+    )
+    bounces: IntProperty(
+        name="Bounces",
+        description="How often light is reflected from surface to surface",
+        min=1,
+        max=MAX_BOUNCES,
+        soft_max=4,
+        default=3,
     )
     use_reflections: BoolProperty(
         name="Reflections",
@@ -91,6 +107,7 @@ def light_values(properties: LightProperties) -> dict:
         "ambient_occlusion": _occlusion(properties),
         "reflections": properties.use_reflections,
         "refraction": properties.use_refraction,
+        "bounces": properties.bounces if properties.use_bounced_light else 0,
     }
 
 

@@ -333,6 +333,8 @@ GERMAN = {
     "Blend Depth": "Mischtiefe",
     "Blend the Rest": "Rest mischen",
     "Blur Samples": "Unschärfe-Samples",
+    "Bounced Light": "Indirektes Licht",
+    "Bounces": "Reflexionen",
     "Broken Objects": "Fehlerhafte Objekte",
     "Camera": "Kamera",
     "Choose method and samples together": "Methode und Samples zusammen wählen",
@@ -526,6 +528,7 @@ GERMAN = {
     ),
     "Homogeneous": "Homogen",
     "Homogeneous, as Printed": "Homogen, wie gedruckt",
+    "How often light is reflected from surface to surface": "Wie oft Licht von Fläche zu Fläche reflektiert wird",
     "How a splat is drawn and filtered": "Wie ein Splat gezeichnet und gefiltert wird",
     ("How far away a surface can be and still block the world's light; 0 for half the distance to the camera"): (
         "Wie weit entfernt eine Fläche sein und das Licht der Welt noch abhalten kann; bei 0 halb so weit wie die "
@@ -644,6 +647,13 @@ GERMAN = {
     ): (
         "Glas zeigen lassen, was dahinter steht, gebrochen, gefärbt und unscharf; sonst ist es undurchsichtig. Was "
         "dahinter ist, wird für jede Ansicht neu gezeichnet"
+    ),
+    (
+        "Let surfaces light one another, and keep the world's light from one another. It is computed for the whole "
+        "scene when that has changed, which takes some seconds, and takes the place of Ambient Occlusion"
+    ): (
+        "Flächen einander beleuchten und das Licht der Welt voneinander abhalten lassen. Es wird für die ganze Szene "
+        "berechnet, wenn sie sich geändert hat, was einige Sekunden dauert, und ersetzt Umgebungsverdeckung"
     ),
     "Levels": "Stufen",
     "Levels of brightness that each light is shown in": "Helligkeitsstufen, in denen jede Lampe gezeigt wird",

@@ -225,6 +225,19 @@ class RENDER_PT_surfel_refraction(_RenderPanel, bpy.types.Panel):
         pass
 
 
+class RENDER_PT_surfel_bounced_light(_RenderPanel, bpy.types.Panel):
+    bl_label = "Bounced Light"
+    bl_options = frozenset({"DEFAULT_CLOSED"})
+    properties = ("bounces",)
+
+    def draw_header(self, context):
+        self.layout.prop(getattr(context.scene, RENDER_SETTINGS), "use_bounced_light", text="")
+
+    def draw(self, context):
+        self.layout.active = getattr(context.scene, RENDER_SETTINGS).use_bounced_light
+        super().draw(context)
+
+
 class RENDER_PT_surfel_reflections(_RenderPanel, bpy.types.Panel):
     bl_label = "Reflections"
     bl_options = frozenset({"DEFAULT_CLOSED"})
@@ -327,6 +340,7 @@ ORDERED = (
     RENDER_PT_surfel_meshes,
     RENDER_PT_surfel_shadows,
     RENDER_PT_surfel_ambient_occlusion,
+    RENDER_PT_surfel_bounced_light,
     RENDER_PT_surfel_reflections,
     RENDER_PT_surfel_refraction,
     RENDER_PT_surfel_eye_dome,

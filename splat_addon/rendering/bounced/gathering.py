@@ -23,6 +23,8 @@ from .surfaces import Surfaces
 RAYS, _FEWEST, _MOST = 1_500_000, 32, 256
 #: Rays of a merged surfel to each lamp; in all.
 _TO_LAMPS, _ALL_TO_LAMPS = 16, 1_000_000
+#: How far from a lamp, in cubes, nothing hides it: what it is mounted on.
+_LAMP_ROOM = 2.5
 #: Merged surfels whose rays are followed together.
 _AT_ONCE = 256
 #: Steps of two numbers that fill a square evenly (Roberts 2018), and of three that keep neighbours apart.
@@ -33,8 +35,8 @@ _BETWEEN_SIDES, _APART = 0.37, 1 / 1.22074408460575947536 ** np.arange(1, 4)
 @dataclass(frozen=True, eq=False)
 class Seen:
     """What m merged surfels see through d rays each, weighted by the cosine. numbers: (m, d) int32 merged surfels; -1
-    for the world, -2 for nothing that lights, -3 for a ray that does not count. world: (m, 3) mean of the world's
-    light. open: (m,) the world's share. counts: (m,) rays that count. distances: (m,) harmonic mean, in cells."""
+    for the world, -2 for a ray that does not count, because it is inside of something. world: (m, 3) mean of the
+    world's light. open: (m,) its share. counts: (m,) rays that count. distances: (m,) harmonic mean, in cells."""
 
     numbers: np.ndarray
     world: np.ndarray
@@ -44,7 +46,7 @@ class Seen:
 
     def gathered(self, radiance: np.ndarray) -> np.ndarray:
         """(m, 3) mean radiance that arrives if merged surfels send this, (m, 3)."""
-        every = np.concatenate([radiance, np.zeros((3, 3))])  # -1, -2 and -3 are the last ones
+        every = np.concatenate([radiance, np.zeros((2, 3))])  # -1 and -2 are the last ones
         total = np.stack([every[:, k][self.numbers].sum(axis=1) for k in range(3)], axis=1)
         return self.world + total / np.maximum(self.counts, 1)[:, None]
 
@@ -62,7 +64,7 @@ def _seen_from(surfaces: Surfaces, sky, count: int, some: slice) -> tuple[np.nda
     directions = cosine_directions(surfaces.points.normals[own], chances)
     counts_too = surfaces.are_free[own]
     rows = np.flatnonzero(counts_too)
-    numbers = np.full(len(own), -3, np.int32)
+    numbers = np.full(len(own), -2, np.int32)
     edge = surfaces.voxels.edge
     begins = surfaces.starts[own[rows]]
     cubes = surfaces.voxels.first_full(begins, directions[rows])
@@ -79,7 +81,7 @@ def _seen_from(surfaces: Surfaces, sky, count: int, some: slice) -> tuple[np.nda
     escaped = rows[~is_met]
     world[escaped] = sky(directions[escaped])
     shape = len(own) // count, count
-    counts = counts_too.reshape(shape).sum(axis=1)
+    counts = (numbers > -2).reshape(shape).sum(axis=1)
     per = 1 / np.maximum(counts, 1)
     is_open = (numbers == -1).reshape(shape).sum(axis=1) * per
     mean_inverse = inverse.reshape(shape).sum(axis=1) * per
@@ -135,7 +137,10 @@ def _lit_by(surfaces: Surfaces, light: Light, count: int, some: slice) -> np.nda
         value *= np.isin(surfaces.points.light_sets[own], light.receivers)[:, None]
     if light.casts_shadow:
         rows = np.flatnonzero(value.any(axis=1))
-        is_hidden = surfaces.voxels.first_full(begins[rows], toward[rows], distances[rows]) >= 0
+        is_hidden = (
+            surfaces.voxels.first_full(begins[rows], toward[rows], distances[rows] - _LAMP_ROOM * surfaces.voxels.edge)
+            >= 0
+        )
         value[rows[is_hidden]] = 0
     counts = counts_too.reshape(-1, count).sum(axis=1)
     return value.reshape(-1, count, 3).sum(axis=1) / np.maximum(counts, 1)[:, None]

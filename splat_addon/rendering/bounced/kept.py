@@ -3,9 +3,12 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from ..contents import contents
 from ..scene import Scene
 from .light import BouncedLight, bounced_light
+from .solids import are_solid
 
 #: Fields of scenes and instances that bounced light does not depend on: what is not seen still sends light.
 _NO_MATTER = frozenset({"is_seen", "background", "hides_environment", "light_probes"})
@@ -17,11 +20,12 @@ class Bounced:
     def __init__(self):
         self._kept: tuple[tuple, BouncedLight | None] | None = None
 
-    def of(self, scene: Scene, bounces: int) -> BouncedLight:
-        """The same object as long as the scene is."""
-        made_from = bounces, contents(scene, _NO_MATTER)
+    def of(self, scene: Scene, eye: np.ndarray, bounces: int) -> BouncedLight | None:
+        """The same object as long as the scene is, and the eye, (3,) world, is in the same rooms."""
+        solid = are_solid(scene, eye)
+        made_from = bounces, contents(scene, _NO_MATTER), solid.tobytes()
         if self._kept is None or self._kept[0] != made_from:
-            self._kept = made_from, bounced_light(scene, bounces)
+            self._kept = made_from, bounced_light(scene, solid, bounces)
         return self._kept[1]
 
     def forget(self) -> None:

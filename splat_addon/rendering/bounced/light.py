@@ -46,13 +46,19 @@ class BouncedLight:
 
 
 def bounced_light(
-    scene: Scene, bounces: int, rays: int = RAYS, voxels: int = MOST_VOXELS, surfels: int = MOST_SURFELS
+    scene: Scene,
+    solid: np.ndarray,
+    bounces: int,
+    rays: int = RAYS,
+    voxels: int = MOST_VOXELS,
+    surfels: int = MOST_SURFELS,
 ) -> BouncedLight | None:
     """The light that the scene's surfaces send to one another; None if it has none. Lamps light them, with shadows.
 
-    bounces: how often light is reflected. rays: in all. voxels, surfels: how finely space and surfaces are divided.
+    solid: (n,) bool, as of `are_solid`. bounces: how often light is reflected. rays: in all. voxels, surfels: how
+    finely space and surfaces are divided.
     """
-    surfaces = surfaces_of(scene, voxels, surfels)
+    surfaces = surfaces_of(scene, solid, voxels, surfels)
     if surfaces is None:
         return None
     seen = seen_from(surfaces, sky_of(scene), rays)
@@ -64,7 +70,7 @@ def bounced_light(
     return BouncedLight(grid.low, surfaces.cell * grid.edge, *of_surfels)
 
 
-def surfaces_of(scene: Scene, voxels: int, surfels: int) -> Surfaces | None:
+def surfaces_of(scene: Scene, solid: np.ndarray, voxels: int, surfels: int) -> Surfaces | None:
     """The surfaces of a scene; None if there are none."""
     low, edge, shape = grid_of(scene, voxels)
     if not edge > 0:
@@ -79,7 +85,7 @@ def surfaces_of(scene: Scene, voxels: int, surfels: int) -> Surfaces | None:
         numbers = ((x * shape[1] + y) * shape[2] + z) * SIDES + side_of(normals)
         return rows[chooser.fresh(numbers[rows])]
 
-    points = [some for some in points_of(scene, edge, choose) if len(some)]
+    points = [some for some in points_of(scene, edge, solid, choose) if len(some)]
     return make_surfaces(low, edge, shape, points, surfels) if points else None
 
 

@@ -88,9 +88,9 @@ class Chooser:
         return rows
 
 
-def points_of(scene: Scene, edge: float, choose) -> Iterator[Points]:
-    """Points of everything in the scene, at most `edge` apart. choose: function of (n, 3) positions and normals that
-    returns the rows to keep, called before what is dear is looked up."""
+def points_of(scene: Scene, edge: float, solid: np.ndarray, choose) -> Iterator[Points]:
+    """Points of everything in the scene, at most `edge` apart. solid: as of `are_solid`. choose: function of (n, 3)
+    positions and normals that returns the rows to keep, called before what is dear is looked up."""
     table = scene.table
     for kind in np.unique(table.kind_of).tolist():
         rows = np.flatnonzero((table.kind_of == kind) & ~table.are_flattened)
@@ -99,16 +99,19 @@ def points_of(scene: Scene, edge: float, choose) -> Iterator[Points]:
         placed = table.every_kind[kind]
         local = edge / float(table.stretches[rows, 0].max())
         places = _places(placed, local)
-        places = places.taken(_are_opaque(placed, places))
+        if not (opaque := _are_opaque(placed, places)).all():
+            places = places.taken(opaque)
         if len(rows) > 1:
             places = _thinned(places, local)
         step = max(_AT_ONCE // max(len(places.positions), 1), 1)
         for first in range(0, len(rows), step):
             some = rows[first : first + step]
-            yield _placed_points(placed, places, table.matrices[some], table.light_sets[some], choose)
+            yield _placed_points(placed, places, table.matrices[some], table.light_sets[some], solid[some], choose)
 
 
-def _placed_points(placed: Placed, places: _Places, matrices: np.ndarray, light_sets: np.ndarray, choose) -> Points:
+def _placed_points(
+    placed: Placed, places: _Places, matrices: np.ndarray, light_sets: np.ndarray, solid: np.ndarray, choose
+) -> Points:
     """The points of instances with these (m, 4, 4) matrices."""
     linear, count = matrices[:, :3, :3], max(len(places.positions), 1)
     shift = linear @ np.asarray(placed.shape.origin) + matrices[:, :3, 3]
@@ -119,7 +122,7 @@ def _placed_points(placed: Placed, places: _Places, matrices: np.ndarray, light_
     chosen = choose(positions, normals)
     own, sets = places.taken(chosen % count), light_sets[chosen // count].astype(np.uint8)
     albedo, emission = _surfaces(placed, own)
-    have_backs = np.full(len(chosen), not placed.is_closed)
+    have_backs = ~solid[chosen // count]
     if getattr(placed.shape, "hidden_back", None) is not None:
         have_backs &= placed.shape.hidden_back[own.rows[:, 0]] < 0.5
     return Points(positions[chosen], normals[chosen], albedo, emission, sets, have_backs)
@@ -175,20 +178,27 @@ def _grids(counts: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray
 
 
 def _of_triangles(polygons, edge: float) -> _Places:
+    """Points in even steps along the two shorter sides of each triangle, up to the third."""
     corners = polygons.positions.reshape(-1, 3, 3)
-    counts = np.maximum(np.ceil(polygons.longest_edges / (_APART * edge)), 1).astype(np.int64)
-    rows, (i, j) = _grids(np.stack([counts, counts], axis=1))
-    # the centroids of the small triangles that a triangle is divided into
-    is_upper = i + j >= counts[rows]
-    u, v = (i + 1 / 3) / counts[rows], (j + 1 / 3) / counts[rows]
-    u, v = np.where(is_upper, 1 - u, u), np.where(is_upper, 1 - v, v)
-    weights = np.stack([1 - u - v, u, v], axis=1).astype(np.float32)
-    positions = np.einsum("nk,nkc->nc", weights, corners[rows])
+    sides = np.linalg.norm(corners[:, [1, 2, 0]] - corners[:, [2, 0, 1]], axis=2)  # opposite to each corner
     with np.errstate(invalid="ignore", divide="ignore"):
-        own = unit(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
-    has_area = np.isfinite(own).all(axis=1)[rows]
-    rows, positions, weights = rows[has_area], positions[has_area], weights[has_area]
-    return _Places(positions, own[rows], 3 * rows[:, None] + np.arange(3), weights)
+        normals = unit(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
+    usable = np.flatnonzero(np.isfinite(normals).all(axis=1))
+    apex = sides[usable].argmax(axis=1)
+    ends = (apex + 1) % 3, (apex + 2) % 3
+    # the side to one end lies opposite to the other
+    lengths = np.stack([sides[usable, ends[1]], sides[usable, ends[0]]], axis=1)
+    counts = np.maximum(np.ceil(lengths / (_APART * edge)), 1).astype(np.int64)
+    rows, places = _grids(counts)
+    u, v = ((k + 0.5).astype(np.float32) / counts[rows, j].astype(np.float32) for j, k in enumerate(places))
+    room = 1 - v
+    kept = np.flatnonzero(u - room <= 0.5 / counts[rows, 0])
+    rows, u, v = rows[kept], np.minimum(u, room)[kept], v[kept]
+    own, order = usable[rows], np.stack([apex, *ends], axis=1)[rows]
+    first, *others = (corners[usable, k] for k in (apex, *ends))
+    along = [other - first for other in others]
+    positions = first[rows] + along[0][rows] * u[:, None] + along[1][rows] * v[:, None]
+    return _Places(positions, normals[own], 3 * own[:, None] + order, np.stack([1 - u - v, u, v], axis=1))
 
 
 def _mean(values: np.ndarray, places: _Places) -> np.ndarray:

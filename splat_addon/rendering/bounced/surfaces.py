@@ -49,7 +49,7 @@ class Surfaces:
         """(n,) int32 merged surfels that rays meet in these cubes: of the sides that face the ray, the one that faces
         it most; -1 where none does."""
         cells = self._flat_cells(np.stack(np.unravel_index(cubes, self.voxels.blocks.shape), axis=1) // self.cell)
-        facing, present = side_of(-directions, None), self.present[cubes]
+        facing, present = facing_sides(directions), self.present[cubes]
         found, best = np.full(len(cubes), -1, np.int32), np.zeros(len(cubes), np.float32)
         for axis in range(3):
             side = facing[:, axis]
@@ -79,14 +79,18 @@ def cells_of(shape: tuple[int, ...], cell: int) -> tuple[int, ...]:
     return tuple(-(-n // cell) for n in shape)
 
 
-def side_of(vectors: np.ndarray, axis=...) -> np.ndarray:
-    """(n,) sides that (n, 3) vectors are nearest to: 2 for each axis, the first towards its positive end. axis None:
-    (n, 3) for each axis the side that the vector points to."""
-    sides = 2 * np.arange(3) + (vectors < 0)
-    if axis is None:
-        return sides
-    largest = np.abs(vectors).argmax(axis=1)
-    return np.take_along_axis(sides, largest[:, None], axis=1)[:, 0]
+def side_of(vectors: np.ndarray) -> np.ndarray:
+    """(n,) uint8 sides that (n, 3) vectors are nearest to: 2 for each axis, the first towards its positive end."""
+    x, y, z = np.abs(vectors.T)
+    is_x, is_y = (x >= y) & (x >= z), y >= z
+    largest = np.where(is_x, np.uint8(0), np.where(is_y, np.uint8(1), np.uint8(2)))
+    is_negative = vectors.T < 0
+    return 2 * largest + np.where(is_x, is_negative[0], np.where(is_y, is_negative[1], is_negative[2]))
+
+
+def facing_sides(directions: np.ndarray) -> np.ndarray:
+    """(n, 3) for each axis the side that looks against (n, 3) directions."""
+    return 2 * np.arange(3) + (directions > 0)
 
 
 def make_surfaces(
@@ -103,12 +107,18 @@ def make_surfaces(
         present[cubes[sides == side]] |= np.uint8(1 << side)
     for cell in _CELLS:
         keys = np.ravel_multi_index((at // cell).T, cells_of(shape, cell)) * SIDES + sides
-        order = np.argsort(keys, kind="stable")
-        ordered = keys[order]
-        begins = np.flatnonzero(np.concatenate([[True], ordered[1:] != ordered[:-1]]))
-        if len(begins) <= most:
+        numbers = np.full(np.prod(cells_of(shape, cell)) * SIDES, -1, np.int32)
+        numbers[keys] = 0
+        if np.count_nonzero(numbers == 0) <= most:
             break
-    numbers = np.full(np.prod(cells_of(shape, cell)) * SIDES, -1, np.int32)
+    # of a cell with fronts, backs do not count: they are inside of what is there
+    have_fronts = np.zeros(len(numbers), bool)
+    have_fronts[keys[: len(fronts)]] = True
+    is_back = np.arange(len(every)) >= len(fronts)
+    order = np.flatnonzero(~(is_back & have_fronts[keys]))
+    order = order[np.argsort(keys[order], kind="stable")]
+    ordered = keys[order]
+    begins = np.flatnonzero(np.concatenate([[True], ordered[1:] != ordered[:-1]]))
     numbers[ordered[begins]] = np.arange(len(begins))
     every = every.taken(order)
     starts = every.positions - low + every.normals * (1.01 * edge * np.abs(every.normals).sum(axis=1, keepdims=True))

@@ -47,9 +47,9 @@ def coarse(monkeypatch):
     """Gathers few rays, and counts how often."""
     calls = []
 
-    def few(scene, bounces):
+    def few(scene, solid, bounces):
         calls.append(bounces)
-        return bounced_light(scene, bounces, **COARSE)
+        return bounced_light(scene, solid, bounces, **COARSE)
 
     monkeypatch.setattr(kept, "bounced_light", few)
     return calls
@@ -62,7 +62,7 @@ def test_matt_surfaces_show_what_the_twin_looks_up(render, shading):
     frame = render(scene, CAMERA, settings)
     seen = frame.depth < 100
     if shading == "principled":
-        light = bounced_light(scene, 2, **COARSE)
+        light = bounced_light(scene, np.array([False, True]), 2, **COARSE)
         expected, _ = bounced_at(light, frame.position[seen], frame.normal[seen])
         expected = expected * frame.diffuse_color[seen][:, :3]
         assert np.abs(frame.color[seen][:, :3] - expected).max() < 2e-5

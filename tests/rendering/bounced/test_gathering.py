@@ -11,6 +11,7 @@ from splat_addon.reference import scenes
 from splat_addon.rendering import Light, Material, PolygonInstance, Scene, make_polygons
 from splat_addon.rendering.bounced.gathering import bounced, lit_by_lamps, seen_from
 from splat_addon.rendering.bounced.light import bounced_light, sky_of, surfaces_of
+from splat_addon.rendering.bounced.solids import are_solid
 
 #: Cubes, merged surfels and rays of a coarse and a fine gathering.
 COARSE, FINE = (1 << 15, 500, 1 << 15), (1 << 18, 1000, 1 << 17)
@@ -40,7 +41,8 @@ def disc(radius, height, is_up, material=PLAIN):
 def gathered(scene, bounces, effort=COARSE):
     """(m, 3) irradiance over pi, positions and normals of merged surfels, the world's share, and points of each."""
     voxels, surfels, rays = effort
-    surfaces = surfaces_of(scene, voxels, surfels)
+    solid = are_solid(scene, np.full(3, 100.0))
+    surfaces = surfaces_of(scene, solid, voxels, surfels)
     seen = seen_from(surfaces, sky_of(scene), rays)
     light = bounced(surfaces, seen, lit_by_lamps(surfaces, scene.lights), bounces)
     places, normals = (surfaces.mean(getattr(surfaces.points, name)) for name in ("positions", "normals"))
@@ -84,7 +86,7 @@ def test_ball_under_an_even_sky_has_all_of_it(kind):
 ), ids=lambda lamp: f"{lamp.kind} {lamp.size}")  # fmt: skip
 def test_lamp_lights_what_nothing_hides(lamp):
     scene = Scene(polygons=[disc(1.0, 0.0, True), disc(0.3, 0.4, True)], lights=[replace(lamp, casts_shadow=True)])
-    surfaces = surfaces_of(scene, *FINE[:2])
+    surfaces = surfaces_of(scene, np.zeros(2, bool), *FINE[:2])
     light = lit_by_lamps(surfaces, scene.lights)[:, 0]
     places, normals = (surfaces.mean(getattr(surfaces.points, name)) for name in ("positions", "normals"))
     away = np.linalg.norm(places[:, :2], axis=1)
@@ -97,4 +99,34 @@ def test_lamp_lights_what_nothing_hides(lamp):
 
 
 def test_scene_of_nothing_has_no_bounced_light():
-    assert bounced_light(Scene(), 3) is None
+    assert bounced_light(Scene(), np.zeros(0, bool), 3) is None
+
+
+def cube(place=(0.0, 0, 0), half=1.0, faces=FACES):
+    """A box whose faces look out of it."""
+    corners = [(x, y, z) for x in (-half, half) for y in (-half, half) for z in (-half, half)]
+    matrix = np.eye(4)
+    matrix[:3, 3] = place
+    return PolygonInstance(make_polygons(corners, faces), matrix)
+
+
+def test_closed_things_are_solid_unless_something_is_inside():
+    away, inside = np.full(3, 9.0), np.zeros(3)
+    assert are_solid(Scene(polygons=[cube(), cube((4, 0, 0))]), away).all()
+    assert not are_solid(Scene(polygons=[cube(faces=FACES[1:])]), away).any()
+    assert not are_solid(Scene(polygons=[box(0.5)]), away).any()
+    assert are_solid(Scene(polygons=[cube(), cube((4, 0, 0))]), inside).tolist() == [False, True]
+    assert not are_solid(Scene(polygons=[cube()], lights=[Light("point", position=(0.5, 0, 0))]), away).any()
+    assert are_solid(Scene(polygons=[cube(), cube(half=0.2)]), away).tolist() == [False, True]
+
+
+def test_what_is_buried_does_not_count():
+    """A floor that goes on below a solid wall is as light at its foot as if it ended there."""
+    floor = cube((0, 0, -1.5), 1.5)
+    wall = cube((2.0, 0, 1.0), 1.05)
+    light, places, normals, _, _ = gathered(Scene(polygons=[floor, wall], world=(1, 1, 1)), 0, FINE)
+    is_floor = (np.abs(places[:, 2]) < 0.05) & (normals[:, 2] > 0.9) & (np.abs(places[:, 1]) < 0.8)
+    beside = is_floor & (places[:, 0] > 0.7) & (places[:, 0] < 0.95)
+    assert beside.any()
+    # a wall of height h leaves (1 + sin(a)) / 2 at its foot, of a the angle to its top
+    assert 0.5 < np.median(light[beside, 0]) < 0.75
