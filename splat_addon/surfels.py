@@ -238,6 +238,11 @@ class Surfels(Shape):
         return bool((self.colors[:, 3] < OPAQUE).any())
 
     @cached_property
+    def transparent_slots(self) -> tuple[int, ...]:
+        """The materials of surfels that let light through."""
+        return tuple(np.unique(self.materials[self.colors[:, 3] < OPAQUE]).tolist())
+
+    @cached_property
     def is_cut_out(self) -> bool:
         """Whether nearly all of the surface is either clear or opaque, as where an image cuts leaves out of cards."""
         opacity, areas = self.colors[:, 3], self.scales.prod(axis=1)

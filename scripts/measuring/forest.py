@@ -169,6 +169,7 @@ def forest(size, count: int, world=(0.5, 0.65, 0.9)):
 
 def far_rows(scene: bpy.types.Scene) -> slice:
     """The rows of a picture in which only trees of the field's far third are seen."""
+    bpy.context.view_layer.update()
     matrix = scene.camera.matrix_world.inverted()
     start = FIELD * 2 / 3
     top = matrix @ Vector((0, start, SLOPE * start + CROWN_HEIGHT + CROWN[2] + CARD_EDGE))

@@ -156,8 +156,8 @@ def _instance_splats(instance: Instance, camera: Camera, with_finish: bool) -> S
         uvs = surfels.uvs.astype(np.float64), np.stack([surfels.uv_along_x, surfels.uv_along_y], axis=1), border
     textures = surfel_textures(instance)
     count = len(surfels)
-    opacity, is_transparent = np.ones(count), np.full(count, instance.is_transparent)
-    if instance.is_transparent:
+    opacity, is_transparent = np.ones(count), np.full(count, instance.lets_through)
+    if instance.lets_through:
         opacity = np.clip(surfels.colors[:, 3].astype(np.float64), 0, 1)
     blend = np.full(count, np.inf) if surfels.blend_depth is None else surfels.blend_depth.astype(np.float64)
     rest = *surfels.clip_lines(), blend, opacity, is_transparent, np.full(count, instance.is_holdout), np.zeros(count)
@@ -167,7 +167,7 @@ def _instance_splats(instance: Instance, camera: Camera, with_finish: bool) -> S
     )
     is_seen = cosine >= 0
     if not instance.hides_backs(camera):
-        is_seen |= instance.is_transparent or field_values(surfels, "hidden_back") < HIDDEN
+        is_seen |= instance.lets_through or field_values(surfels, "hidden_back") < HIDDEN
     return splats if is_seen.all() else splats.take(np.flatnonzero(is_seen))
 
 

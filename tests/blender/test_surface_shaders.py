@@ -258,3 +258,24 @@ def test_faces_that_are_seen_are_converted_without_the_others(made, add_mesh, co
     assert (surfels.positions[:, 0] + bpy.context.object.location[0]).max() < 1
     said = capfd.readouterr().out
     assert "Some faces are left out: the material 'made' has no surface but a volume, which is not drawn" in said
+
+
+@pytest.mark.parametrize(("way", "is_one"), [("alpha", True), ("mix", True), ("plain", False), ("inverted", False)])
+def test_a_material_cuts_holes_where_its_image_is_transparent(made, way, is_one):
+    """An even transparency, and one that nodes make, are blended."""
+    image, leaf = made.add("ShaderNodeTexImage"), made.add("ShaderNodeBsdfPrincipled")
+    image.image = bpy.data.images.new("leaf", 4, 4, alpha=True)
+    made.tree.links.new(image.outputs["Color"], leaf.inputs["Base Color"])
+    if way == "mix":
+        leaf = made.mix("ShaderNodeMixShader", made.add("ShaderNodeBsdfTransparent"), leaf)
+        made.tree.links.new(image.outputs["Alpha"], leaf.inputs[0])
+    elif way == "inverted":
+        turned = made.add("ShaderNodeInvert")
+        made.tree.links.new(image.outputs["Color"], turned.inputs["Color"])
+        made.tree.links.new(turned.outputs["Color"], leaf.inputs["Alpha"])
+    elif way == "alpha":
+        made.tree.links.new(image.outputs["Alpha"], leaf.inputs["Alpha"])
+    else:
+        leaf.inputs["Alpha"].default_value = 0.5
+    made.show(leaf)
+    assert shading_material(made.material, made.notes).cuts_holes is is_one

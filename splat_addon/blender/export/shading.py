@@ -20,6 +20,7 @@ from ..materials.node_trees import uses_nodes
 from ..materials.socket_ranges import is_radiance
 from ..materials.surface_shaders import CLEAR, Part, Shader, is_holdout, parts, surface_shader, why_unseen
 from ..materials.texture_images import odd_pixels_sentence
+from ..materials.transparent_mixes import cuts_holes
 from . import passed_over
 from .styles import style_of_material
 
@@ -119,7 +120,10 @@ def finite_radiance(radiance: tuple[float, float, float], owner: str, notes) -> 
 def shading_material(material: bpy.types.Material | None, notes, own: Collection[str] = ()) -> Material:
     """The material with its style, see `_plain_material`."""
     made = _plain_material(material, notes, own)
-    return made if material is None else replace(made, style=style_of_material(material))
+    if material is None:
+        return made
+    has_holes = uses_nodes(material) and cuts_holes(surface_shader(material))
+    return replace(made, style=style_of_material(material), cuts_holes=has_holes)
 
 
 def _plain_material(material: bpy.types.Material | None, notes, own: Collection[str]) -> Material:

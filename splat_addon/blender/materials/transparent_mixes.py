@@ -47,6 +47,17 @@ def transparent_mix(shader: Shader | None) -> TransparentMix | None:
     return TransparentMix(mixed[0 if is_first else 1], shader, is_first)
 
 
+def cuts_holes(shader: Shader | None) -> bool:
+    """Whether a shader is as transparent as an image says, as for leaves on cards: by its Alpha, or by the factor of
+    its mix with a Transparent BSDF."""
+    mix = transparent_mix(shader)
+    leaf, sockets = (mix.shader, [outer(mix.mix.node.inputs[0], mix.mix.groups)[0]]) if mix else (shader, [])
+    if leaf is not None and "Alpha" in leaf.node.inputs:
+        sockets.append(leaf.socket("Alpha"))
+    sources = [linked(socket) for socket in sockets]
+    return any(source is not None and source[0].bl_idname == "ShaderNodeTexImage" for source in sources)
+
+
 def _clamped(values):
     return values.clip(0, 1)
 

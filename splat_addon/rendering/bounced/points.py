@@ -229,7 +229,7 @@ def _looked_up(image: Image, uvs: np.ndarray) -> np.ndarray:
 def _are_opaque(placed: Placed, places: _Places) -> np.ndarray:
     """(n,) bool: points that block light."""
     opaque = np.ones(len(places.positions), bool)
-    if placed.is_transparent:
+    if placed.lets_through:
         opaque &= placed.shape.colors[places.rows[:, 0], 3] >= _OPAQUE
     if getattr(placed, "is_cut_out", False):
         for rows, colors, texture in _texture_colors(placed, places, placed.shape.materials[places.rows[:, 0]]):

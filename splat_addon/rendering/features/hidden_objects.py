@@ -54,7 +54,7 @@ def passes(planning):
 def search(planning, seen: Texture, rows: int) -> Pass | None:
     """The pass that finds how far each cell of the picture sees, if it may pay. seen: the depth that visibility writes.
     rows: its number of rows per row of samples."""
-    opaque = [kind for kind in planning.surfels if not kind.placed.is_transparent]
+    opaque = [kind for kind in planning.surfels if not kind.placed.lets_through]
     if not may_hide(planning, opaque):
         planning.skip(
             "hidden objects",

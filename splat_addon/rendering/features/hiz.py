@@ -43,7 +43,7 @@ def search(planning) -> Search:
     if not planning.method.culls_hidden:
         return Search(why_not=f"{planning.method.name} draws hidden splats too, as its paper does")
     table = planning.scene.table
-    opaque = table.taken(table.of_kinds(lambda i: isinstance(i, Instance) and not i.is_transparent))
+    opaque = table.taken(table.of_kinds(lambda i: isinstance(i, Instance) and not i.lets_through))
     showing = np.count_nonzero(show_backs(opaque, planning.camera))
     if not showing:
         return Search(why_not="nothing opaque shows its backs, which most of what is hidden would be")

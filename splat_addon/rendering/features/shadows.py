@@ -71,7 +71,7 @@ def passes(planning):
         why = f"{casting} of {len(planning.scene.lights)} lights cast shadows, through {len(made)} maps"
         own = visibility.own_parts(planning, DEPTH)
         drawn = visibility.drawn("shadow_maps", why, own, planning, Kind.SHADOW)
-        opaque = [k for k in planning.surfels if k.placed.casts_shadow and not k.placed.is_transparent]
+        opaque = [k for k in planning.surfels if k.placed.casts_shadow and not k.placed.lets_through]
         each = (
             hidden_objects.looking("hidden_casters", DEPTH, FARTHEST)
             if hidden_objects.may_hide(planning, opaque)

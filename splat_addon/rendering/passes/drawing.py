@@ -59,6 +59,7 @@ def draw_splats(tile: TileContext, p: Pass, target, items: Items, vertex, *varia
             yield from draw_parts(tile, p, target, tile.in_parts(batch.item(0)), programs, viewport)
             continue
         own, first, clipped, last = _whole(tile, batch)
+        own = (*own, *_kinds(batch.item(0)))
         for more, which in ((own, range(clipped, last)), ((*own, "clipped"), range(first, clipped))):
             if which:
                 program = yield from programs.of("together", *more)
@@ -77,12 +78,17 @@ def _whole(tile: TileContext, batch: Items) -> tuple[tuple[str, ...], int, int, 
     return ("cut",), *(int(ends[batch.step]) for ends in (steps.first, steps.clipped, steps.last))
 
 
+def _kinds(placed: DrawItem) -> tuple[str, ...]:
+    """Further variants of the programs that draw an instance's surfels."""
+    return ("with_holes",) if placed.instance.has_holes else ()
+
+
 def draw_parts(
     tile: TileContext, p: Pass, target, parts: Iterable[tuple[DrawItem, Cut]], programs: Programs, viewport=None
 ) -> Generator[Pause]:
     """Draw the parts of `TileContext.in_parts`, their splats with clip lines, which are stored first, apart."""
     for placed, cut in parts:
-        own = () if cut.numbers is None else ("cut",)
+        own = (*(() if cut.numbers is None else ("cut",)), *_kinds(placed))
         for more, first, end in ((own, cut.clipped, cut.count), ((*own, "clipped"), 0, cut.clipped)):
             if first < end:
                 program = yield from programs.of(*more)

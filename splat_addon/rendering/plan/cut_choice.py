@@ -64,7 +64,7 @@ class CutChoice:
             if not may_step(placed, kind.count) or self.levels(placed) is None:
                 continue
             rows = np.flatnonzero(items.table.of_kinds(lambda other, placed=placed: other is placed))
-            is_depth_only = self.is_depth_only and not placed.is_transparent
+            is_depth_only = self.is_depth_only and not placed.lets_through
             steps, tolerance = self.steps(placed), self.settings.detail_tolerance
             found[rows] = chosen_steps(steps, items.taken(rows), self.camera, tolerance, is_depth_only)
         return found
@@ -181,7 +181,7 @@ class CutChoice:
     def sight(self, placed: DrawItem) -> Sight:
         """This view of an instance, as its hierarchy is given it."""
         split, tolerance = split_distances(placed), self.settings.detail_tolerance
-        is_depth_only = self.is_depth_only and not placed.instance.is_transparent
+        is_depth_only = self.is_depth_only and not placed.instance.lets_through
         return sight(placed.instance, self.camera, placed.hides_backs, tolerance, split, is_depth_only)
 
 

@@ -26,7 +26,8 @@ class Material:
     roughness, metallic: 0 to 1. ior: index of refraction of the dielectric coat, which sets its reflectance at normal
         incidence, ((ior - 1) / (ior + 1))^2. emission: scene-linear radiance, the same in all directions.
     index: what the frame's `material_index` shows of it. finish: what `principled` shading adds to it. style: its own
-        toon shading and lines.
+        toon shading and lines. cuts_holes: it is transparent only where its image is, like a card of leaves: its
+        surfels are not blended in layers, but drawn or not, as often as they are opaque.
     Surfels may have their own roughness, metallic and emission, which take the place of these.
     """
 
@@ -37,6 +38,7 @@ class Material:
     index: int = 0
     finish: Finish = PLAIN
     style: Style = AS_THE_PICTURE
+    cuts_holes: bool = False
 
     def __post_init__(self):
         check_range("A material's roughness and metallic", (self.roughness, self.metallic), 0.0, 1.0)

@@ -119,9 +119,19 @@ class Placed:
         return self.textures
 
     @property
-    def is_transparent(self) -> bool:
+    def lets_through(self) -> bool:
         """Whether anything shows through it; never true for holdouts."""
         return self.shape.is_transparent and not self.is_holdout
+
+    @property
+    def has_holes(self) -> bool:
+        """Whether that is through holes alone, in surfels whose materials cut them."""
+        return False
+
+    @property
+    def is_transparent(self) -> bool:
+        """Whether what shows through it is blended with it, in layers."""
+        return self.lets_through and not self.has_holes
 
     def model_view(self, camera: Camera) -> np.ndarray:
         """(4, 4) float64, from positions (without origin) to the camera's view space.
@@ -147,7 +157,7 @@ class Placed:
     @property
     def is_closed(self) -> bool:
         """Whether no back face is visible from outside: it is solid and opaque."""
-        return self.shape.is_solid and not self.is_transparent
+        return self.shape.is_solid and not self.lets_through
 
     def hides_backs(self, camera: Camera) -> bool:
         """Whether no back face can be visible: it is closed, and wholly beyond the near plane, so the camera is
@@ -167,6 +177,14 @@ class Instance(Placed):
     stream: Stream | None = None
     is_cut: bool = False
     is_merged: bool = False
+
+    @property
+    def has_holes(self) -> bool:
+        """Whether all materials of its transparent surfels cut holes."""
+        if not (self.lets_through and any(material.cuts_holes for material in self.materials)):
+            return False
+        last = len(self.materials) - 1
+        return all(self.materials[min(slot, last)].cuts_holes for slot in self.surfels.transparent_slots)
 
     @property
     def surfels(self) -> Surfels:
