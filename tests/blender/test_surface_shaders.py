@@ -260,9 +260,11 @@ def test_faces_that_are_seen_are_converted_without_the_others(made, add_mesh, co
     assert "Some faces are left out: the material 'made' has no surface but a volume, which is not drawn" in said
 
 
-@pytest.mark.parametrize(("way", "is_one"), [("alpha", True), ("mix", True), ("plain", False), ("inverted", False)])
+@pytest.mark.parametrize(
+    ("way", "is_one"), [("alpha", True), ("mix", True), ("tested", True), ("plain", False), ("inverted", False)]
+)
 def test_a_material_cuts_holes_where_its_image_is_transparent(made, way, is_one):
-    """An even transparency, and one that nodes make, are blended."""
+    """An even transparency, and one of other nodes, are blended."""
     image, leaf = made.add("ShaderNodeTexImage"), made.add("ShaderNodeBsdfPrincipled")
     image.image = bpy.data.images.new("leaf", 4, 4, alpha=True)
     made.tree.links.new(image.outputs["Color"], leaf.inputs["Base Color"])
@@ -273,6 +275,11 @@ def test_a_material_cuts_holes_where_its_image_is_transparent(made, way, is_one)
         turned = made.add("ShaderNodeInvert")
         made.tree.links.new(image.outputs["Color"], turned.inputs["Color"])
         made.tree.links.new(turned.outputs["Color"], leaf.inputs["Alpha"])
+    elif way == "tested":
+        test = made.add("ShaderNodeMath")
+        test.operation = "GREATER_THAN"
+        made.tree.links.new(image.outputs["Alpha"], test.inputs[0])
+        made.tree.links.new(test.outputs[0], leaf.inputs["Alpha"])
     elif way == "alpha":
         made.tree.links.new(image.outputs["Alpha"], leaf.inputs["Alpha"])
     else:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import bpy
 
 from .node_products import Product, product
-from .node_walks import linked, outer
+from .node_walks import MAX_CHAIN, linked, outer
 from .surface_shaders import Shader
 
 
@@ -54,8 +54,17 @@ def cuts_holes(shader: Shader | None) -> bool:
     leaf, sockets = (mix.shader, [outer(mix.mix.node.inputs[0], mix.mix.groups)[0]]) if mix else (shader, [])
     if leaf is not None and "Alpha" in leaf.node.inputs:
         sockets.append(leaf.socket("Alpha"))
-    sources = [linked(socket) for socket in sockets]
-    return any(source is not None and source[0].bl_idname == "ShaderNodeTexImage" for source in sources)
+    return any(_shows_an_image(socket) for socket in sockets)
+
+
+def _shows_an_image(socket) -> bool:
+    """Whether an image feeds a socket, also through Math nodes, which make an alpha test of it."""
+    for _ in range(MAX_CHAIN):
+        node, _output = linked(socket) or (None, "")
+        if node is None or node.bl_idname != "ShaderNodeMath":
+            return node is not None and node.bl_idname == "ShaderNodeTexImage"
+        socket = next((own for own in node.inputs if own.is_linked), node.inputs[0])
+    return False
 
 
 def _clamped(values):
