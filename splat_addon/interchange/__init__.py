@@ -10,7 +10,7 @@ of scans has one file, which hands out such columns in portions (`clouds`). `poi
 
 from .clouds import ReadingCancelled
 from .columns import FLOAT_COLORS
-from .contents import SHARED_SUFFIXES, SUFFIXES, point_pieces, read_contents
+from .contents import SHARED_SUFFIXES, SUFFIXES, point_pieces, read_contents, text_columns_of
 from .following import followed
 from .gaussian_ply import write_gaussian_ply
 from .gaussians import DEFAULT_FLATNESS, Gaussians, flat_gaussians, harmonic_colors
@@ -48,6 +48,7 @@ __all__ = [
     "read_contents",
     "read_ply",
     "scanner_path",
+    "text_columns_of",
     "transformed",
     "write_gaussian_ply",
     "write_ply",

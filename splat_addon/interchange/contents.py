@@ -9,7 +9,7 @@ from functools import partial
 from types import ModuleType
 
 from . import e57, gltf, las, pcd, ptx, spz, xyz
-from .clouds import COLOR, Cloud, Progress, read_all
+from .clouds import COLOR, Cloud, Progress, ReadingCancelled, read_all
 from .columns import FLOAT_COLORS, Columns, has
 from .gaussians import DEFAULT_FLATNESS, Gaussians
 from .pieces import PointPieces
@@ -39,6 +39,7 @@ def read_contents(
     float_colors: str = FLOAT_COLORS[0],
     progress: Progress | None = None,
     most: int = 0,
+    text_columns: tuple[str, ...] = (),
 ) -> StoredSurfels | Gaussians | Points:
     """What a file of points holds. Its `said` has a sentence about each thing that was assumed or left out, such as
     faces.
@@ -46,29 +47,35 @@ def read_contents(
     flatness: maximum ratio of a Gaussian's smallest to its middle sigma for it to count as a surfel.
     float_colors: what red, green and blue mean if they are floats, a name in `FLOAT_COLORS`: sRGB display values, as
         Blender's own import takes them, or scene-linear ones.
-    progress: called with the number of points and the share of the file so far, except for PLY and SPZ.
+    progress: called with the number of points and the share of the file so far; of SPZ, glTF and PLY of text, once.
     most: bare points to take, evenly, from a file of more, of which LAZ, COPC and LAS are not read whole; 0: all.
+    text_columns: what the columns of a text file are, as of `xyz.opened`.
 
     Raises ValueError with one sentence for a file that has none of the formats, is damaged or has no positions; OSError
     if it cannot be read; `ReadingCancelled` if `progress` returns False.
     """
     _check_float_colors(float_colors)
     head = _head(path)
+    if is_ply(head) and most and (cloud := opened_points(path)) is not None:
+        return _points(cloud, float_colors, progress, most)
     if is_ply(head):
-        cloud = opened_points(path) if most else None
-        return (
-            _points(cloud, float_colors, progress, most) if cloud else read_ply_contents(path, flatness, float_colors)
-        )
+        return read_ply_contents(path, flatness, float_colors, progress)
     for others, read in _GAUSSIANS.items():
         if others.is_this(head):
-            return read(path, flatness)
+            found = read(path, flatness)
+            if progress is not None and not progress(found.total, 1.0):
+                raise ReadingCancelled
+            return found
     reader = _reader(head)
-    cloud = las.opened(path, most) if reader is las else reader.opened(path)
-    return _points(cloud, float_colors, progress, most)
+    more = {las: (most,), xyz: (text_columns,)}.get(reader, ())
+    return _points(reader.opened(path, *more), float_colors, progress, most)
 
 
 def point_pieces(
-    path: str | os.PathLike, float_colors: str = FLOAT_COLORS[0], progress: Progress | None = None
+    path: str | os.PathLike,
+    float_colors: str = FLOAT_COLORS[0],
+    progress: Progress | None = None,
+    text_columns: tuple[str, ...] = (),
 ) -> PointPieces | None:
     """The bare points of a file of any size, a portion at a time; None if it holds Gaussians or surfels. The arguments
     and errors are those of `read_contents`."""
@@ -76,8 +83,17 @@ def point_pieces(
     head = _head(path)
     if any(others.is_this(head) for others in _GAUSSIANS) or (is_ply(head) and opened_points(path) is None):
         return None
-    opened = opened_points if is_ply(head) else _reader(head).opened
-    return PointPieces(partial(opened, path), float_colors, progress)
+    reader = None if is_ply(head) else _reader(head)
+    more = (text_columns,) if reader is xyz else ()
+    return PointPieces(partial(reader.opened if reader else opened_points, path, *more), float_colors, progress)
+
+
+def text_columns_of(path: str | os.PathLike) -> tuple[str, ...]:
+    """What the columns of a text file of points are, by its names or a guess; none of another file. Raises OSError."""
+    head = _head(path)
+    others = [*_GAUSSIANS, *(reader for reader in _SCANS.values() if reader is not xyz)]
+    is_other = is_ply(head) or any(reader.is_this(head) for reader in others)
+    return () if is_other else xyz.columns_of(head)
 
 
 def _check_float_colors(float_colors: str) -> None:

@@ -9,13 +9,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from .clouds import PORTION, Cloud, Table
+from .clouds import PORTION, Cloud, Progress, ReadingCancelled, Table, joined
 from .columns import POSITION, Columns
 from .gaussian_forms import with_usual_names
 from .gaussian_ply import gaussians, is_gaussians
 from .gaussians import VIEW_DEPENDENT, Gaussians
 from .packed_gaussians import CHUNK, HARMONICS, is_packed, unpacked
-from .ply_file import read_element, read_vertices, vertex_count, vertex_portions
+from .ply_file import Vertices, read_element, vertex_count, vertex_portions
 from .points import Points, points
 from .surfel_ply import StoredSurfels, is_surfels, stored_surfels
 
@@ -24,10 +24,10 @@ _FEWEST_STEPS = 1e5
 
 
 def read_ply_contents(
-    path: str | os.PathLike, flatness: float, float_colors: str
+    path: str | os.PathLike, flatness: float, float_colors: str, progress: Progress | None = None
 ) -> StoredSurfels | Gaussians | Points:
     """The vertices of any PLY file; everything else as in `contents.read_contents`."""
-    read, comments, others = read_vertices(path)
+    read, comments, others = _all_vertices(path, progress)
     said = []
     if is_packed(read):
         read = unpacked(read, read_element(path, CHUNK))
@@ -43,6 +43,17 @@ def read_ply_contents(
         contents = points(columns, float_colors)
     said = (*contents.said, *said, *coarse_steps(columns), *columns.passed_over(), *_left_out(others))
     return replace(contents, said=said)
+
+
+def _all_vertices(path: str | os.PathLike, progress: Progress | None) -> Vertices:
+    """All vertices of a file; those of a text file are read at once."""
+    total, parts, done = max(vertex_count(path), 1), [], 0
+    for part in vertex_portions(path, PORTION):
+        parts.append(part)
+        done += len(next(iter(part.columns.values())))
+        if progress is not None and not progress(done, done / total):
+            raise ReadingCancelled
+    return parts[0]._replace(columns=joined([part.columns for part in parts]))
 
 
 def opened_points(path: str | os.PathLike) -> Cloud | None:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -16,6 +17,9 @@ from .clouds import COLOR, PORTION, Table
 
 #: Bytes at the beginning of a file that tell what it is.
 HEAD = 1 << 16
+
+#: A line that says how many rows follow.
+_COUNT = re.compile(r"\s*[0-9]{1,18}\s*")
 
 #: Words at the start of a line of comment.
 COMMENTS = ("#", "//", "!")
@@ -44,23 +48,28 @@ class Lines:
         """The share of the file that was read."""
         return min(self.stream.tell() / max(self.size, 1), 1.0)
 
-    def rows(self, count: int | None, width: int, separator: str | None = None) -> Iterator[np.ndarray]:
+    def rows(
+        self, count: int | None, width: int, separator: str | None = None, counts: list[int] | None = None
+    ) -> Iterator[np.ndarray]:
         """(n, width) float64 of each portion of the next `count` lines, or of all that follow. Blank lines and those of
-        comment are none. separator: None for blanks. Raises ValueError with a sentence."""
+        comment are none. separator: None for blanks. counts: as of `table_of`. Raises ValueError with a sentence."""
         left = count
         while left is None or left > 0:
             first = self.number + 1
             lines = self.take(PORTION if left is None else min(left, PORTION))
             if not lines:
                 return
-            table = table_of(lines, width, separator, first)
+            table = table_of(lines, width, separator, first, counts)
             if left is not None:
                 left -= len(lines)
             yield table
 
 
-def table_of(lines: list[str], width: int, separator: str | None, first: int) -> np.ndarray:
-    """(n, width) float64. first: the number of the first line. Raises ValueError with a sentence."""
+def table_of(
+    lines: list[str], width: int, separator: str | None, first: int, counts: list[int] | None = None
+) -> np.ndarray:
+    """(n, width) float64. first: the number of the first line. counts: gets whole numbers that stand alone on a line;
+    None: there may be none. Raises ValueError with a sentence."""
     if separator == ";":  # then a comma may stand for the point of a number
         lines = [line.replace(",", ".") for line in lines]
     kept = [line for line in lines if not _says_nothing(line)]
@@ -74,9 +83,13 @@ def table_of(lines: list[str], width: int, separator: str | None, first: int) ->
             return table
     except ValueError:
         pass
-    return np.array(
-        [_numbers(line, width, separator, first + k) for k, line in enumerate(lines) if not _says_nothing(line)]
-    )
+    rows = []
+    for number, line in enumerate(lines, first):
+        if counts is not None and width > 1 and _COUNT.fullmatch(line):
+            counts.append(int(line))
+        elif not _says_nothing(line):
+            rows.append(_numbers(line, width, separator, number))
+    return np.array(rows).reshape(-1, width)
 
 
 def words_of(line: str, separator: str | None) -> list[str]:

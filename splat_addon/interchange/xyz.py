@@ -2,7 +2,8 @@
 """Reads points of text files: PTS, XYZ, CSV and the like, a point on each line.
 
 What the columns are is told by a line of names before the first numbers, or else by their number and their first
-values, and it is said. A line with a single number before the points is their count, as PTS has it.
+values, and it is said; or the user says it. A line with a single number before the points, or between them, is the
+count of those that follow, as PTS has it.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,6 +21,9 @@ from .text_rows import COMMENTS, HEAD, Lines, is_text, lines_of, numbers_in, wit
 
 #: Lines at the beginning that are looked at, and columns that points may have.
 _LOOKED_AT, _MOST_COLUMNS = 200, 100
+
+#: Stands for a column that is left out.
+LEFT_OUT = "-"
 
 #: Column -> names that programs give it, in small letters without anything else.
 _NAMES = {
@@ -38,40 +42,62 @@ _COLUMNS = {name: column for column, names in _NAMES.items() for name in names}
 @dataclass(frozen=True)
 class _Layout:
     """start: number of lines before the first point. count: the points that the file says it has, or None. names: of
-    the columns. separator: None for blanks. is_named: whether the file names them."""
+    the columns. separator: None for blanks. how: they were found, the word for it."""
 
     start: int
     count: int | None
     names: tuple[str, ...]
     separator: str | None
-    is_named: bool
+    how: str
 
 
 def is_this(head: bytes) -> bool:
     return _layout(head) is not None
 
 
-def opened(path: str | os.PathLike) -> Cloud:
-    """The points of the file. Raises OSError."""
+def columns_of(head: bytes) -> tuple[str, ...]:
+    """What the columns of a file are that begins so, as it names them or as they are guessed; none if it is no text of
+    points."""
+    layout = _layout(head)
+    return () if layout is None else layout.names
+
+
+def _chosen(columns: tuple[str, ...], width: int) -> tuple[str, ...]:
+    """The names of the columns as the user says them. Raises ValueError with a sentence."""
+    names = tuple(_COLUMNS.get(name.lower(), name) for name in columns)
+    kept = [name for name in names if name != LEFT_OUT]
+    if len(names) != width or len(set(kept)) < len(kept) or not set(POSITION) <= set(kept):
+        raise ValueError(
+            f"The text has {width} columns, which must be named once each, among them x, y and z, and {LEFT_OUT} for "
+            f"one to leave out, not {' '.join(columns)[:80]!r}."
+        )
+    return tuple(name if name != LEFT_OUT else f"column_{k + 1}" for k, name in enumerate(names))
+
+
+def opened(path: str | os.PathLike, columns: tuple[str, ...] = ()) -> Cloud:
+    """The points of the file. columns: what its columns are, "-" for one to leave out; by default as named or guessed.
+    Raises ValueError with a sentence if there are others, OSError."""
     with open(path, "rb") as stream:
         layout = _layout(stream.read(HEAD))
+    if columns:
+        layout = replace(layout, names=_chosen(columns, len(layout.names)), how="chosen")
     cloud = Cloud(iter(()))
     cloud.portions = _portions(path, layout, cloud.said)
     return cloud
 
 
 def _portions(path: str | os.PathLike, layout: _Layout, said: list[str]) -> Iterator[tuple[float, Table]]:
-    how = "named" if layout.is_named else "guessed"
-    said.append(f"Took the columns of the text, as {how}, as {' '.join(layout.names)}")
-    found = 0
+    said.append(f"Took the columns of the text, as {layout.how}, as {' '.join(layout.names)}")
+    found, counts = 0, []
     with open(path, "rb") as stream:
         lines = Lines(stream, os.path.getsize(path))
         lines.take(layout.start)
-        for rows in lines.rows(None, len(layout.names), layout.separator):
+        for rows in lines.rows(None, len(layout.names), layout.separator, counts):
             found += len(rows)
             yield lines.share, with_whole_colors(dict(zip(layout.names, rows.T.copy(), strict=True)))
-    if layout.count not in (None, found):
-        said.append(f"Read {found:,} points, where the file says that it has {layout.count:,}")
+    told = None if layout.count is None else layout.count + sum(counts)
+    if told not in (None, found):
+        said.append(f"Read {found:,} points, where the file says that it has {told:,}")
 
 
 def _layout(head: bytes) -> _Layout | None:
@@ -88,7 +114,7 @@ def _layout(head: bytes) -> _Layout | None:
     named = [line for line, row in zip(lines[:start], rows, strict=False) if line.strip() and not row]
     names = _given_names(named[-1], separator, width) if named else ()
     guessed = _guessed_names(np.array([row for row in rows[start:] if len(row) == width]))
-    return _Layout(start, counts[0] if counts else None, names or guessed, separator, bool(names))
+    return _Layout(start, counts[0] if counts else None, names or guessed, separator, "named" if names else "guessed")
 
 
 def _row(line: str) -> list[float]:

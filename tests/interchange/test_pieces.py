@@ -6,8 +6,18 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from scan_files.formats import las_file, las_rows, ptx_scan
-from splat_addon.interchange import ReadingCancelled, clouds, las, pieces, point_pieces, read_contents, text_rows, xyz
+from scan_files.formats import las_file, las_rows, ptx_scan, spz_file
+from splat_addon.interchange import (
+    ReadingCancelled,
+    clouds,
+    las,
+    pieces,
+    ply_contents,
+    point_pieces,
+    read_contents,
+    text_rows,
+    xyz,
+)
 from splat_addon.interchange.pieces import PointPieces
 
 
@@ -91,3 +101,23 @@ def test_reading_can_be_cancelled_and_gaussians_are_no_points(tmp_path):
 def test_every_array_of_points_is_compared_here():
     named = {"positions", "normals", "radii", "colors", "attributes", "places", "said"}
     assert {each.name for each in fields(read_contents.__globals__["Points"])} == named
+
+
+@pytest.mark.parametrize("kind", ["surfels", "packed"])
+def test_reading_surfels_and_splats_can_be_cancelled(kind, tmp_path, monkeypatch):
+    monkeypatch.setattr(ply_contents, "PORTION", 64)
+    if kind == "surfels":
+        names = [*"xyz", "nx", "ny", "nz", *(f"rot_{k}" for k in range(4)), "scale_0", "scale_1"]
+        head = ["ply", "format binary_little_endian 1.0", "element vertex 200", *(f"property float {n}" for n in names)]
+        rows = np.tile(np.float32([0, 0, 0, 0, 0, 1, 1, 0, 0, 0, 1, 1]), (200, 1))
+        rows[:, 0] = np.arange(200)
+        (tmp_path / "file").write_bytes("\n".join([*head, "end_header", ""]).encode() + rows.tobytes())
+    else:
+        turns = np.tile([0.0, 0, 0, 1], (200, 1))
+        (tmp_path / "file").write_bytes(spz_file(np.random.default_rng(0).normal(size=(200, 3)), turns, 2, 0))
+    told = []
+    whole = read_contents(tmp_path / "file", 1.0, progress=lambda *so_far: told.append(so_far) or True)
+    assert told[-1] == (200, 1.0) and len(whole.surfels) == 200
+    assert len(told) == (4 if kind == "surfels" else 1)
+    with pytest.raises(ReadingCancelled):
+        read_contents(tmp_path / "file", 1.0, progress=lambda points, share: False)

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from scan_files.formats import ptx_scan
-from splat_addon.interchange import text_rows
+from splat_addon.interchange import read_contents, text_columns_of, text_rows
 
 
 @pytest.mark.parametrize(
@@ -100,3 +100,28 @@ def test_a_scanner_that_is_far_from_its_points_is_no_place(read):
 def test_damaged_ptx_is_one_sentence(read, change, sentence):
     with pytest.raises(ValueError, match=sentence):
         read(change(ptx_scan(GRID, 2, TURN)))
+
+
+def test_the_user_says_what_columns_are(tmp_path):
+    (tmp_path / "scan").write_text("".join(f"{k} 7 {k * 2} 1 0.5 {k * 3}\n" for k in range(9)))
+    assert text_columns_of(tmp_path / "scan")[:3] == ("x", "y", "z")
+    found = read_contents(tmp_path / "scan", text_columns=("x", "-", "Height", "intensity", "-", "y"))
+    assert found.positions[2].tolist() == [2, 6, 4] and found.attributes["intensity"].tolist() == [1] * 9
+    assert "as chosen, as x column_2 z intensity column_5 y" in found.said[0]
+    for wrong in (("x", "y", "z"), ("x", "y", "z", "-", "-", "x"), ("x", "y", *"----")):
+        with pytest.raises(ValueError, match="The text has 6 columns, which must be named once each"):
+            read_contents(tmp_path / "scan", text_columns=wrong)
+
+
+def test_other_files_have_no_columns_of_text(tmp_path):
+    (tmp_path / "scan").write_text(ptx_scan(np.ones((4, 3)), 2, np.eye(4)))
+    assert text_columns_of(tmp_path / "scan") == ()
+
+
+def test_several_counts_are_no_points(tmp_path):
+    rows = [f"{k} {k % 3} 1 9" for k in range(12)]
+    (tmp_path / "scan.pts").write_text("\n".join(["5", *rows[:5], " 7 ", *rows[5:]]))
+    found = read_contents(tmp_path / "scan.pts")
+    assert len(found.positions) == 12 and not any("says that it has" in each for each in found.said)
+    (tmp_path / "scan.pts").write_text("\n".join(["5", *rows[:5], "8", *rows[5:]]))
+    assert "Read 12 points, where the file says that it has 13" in read_contents(tmp_path / "scan.pts").said

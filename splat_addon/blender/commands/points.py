@@ -12,7 +12,7 @@ import bpy
 
 from ...claims import claimed
 from ...interchange import FLOAT_COLORS
-from ..conversion.file_import import FileImport
+from ..conversion.file_import import FileImport, Reading
 from ..conversion.points_conversion import PointsBatch
 from ..conversion.points_settings import PointsProperties, keywords, viewpoint
 from ..conversion.series import begin_series, first_shown
@@ -37,7 +37,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     source = parser.add_mutually_exclusive_group()
     source.add_argument("files", nargs="*", default=[], metavar="FILE", help="scans, Gaussian splats or surfels")
     source.add_argument("--objects", nargs="+", help="names; without them and files, all visible points")
-    parser.add_argument("--most", type=int, default=0, metavar="NUMBER", help="points to take of a scan with more")
+    parser.add_argument(
+        "--most",
+        type=int,
+        default=0,
+        dest="most_points",
+        metavar="NUMBER",
+        help="points to take of a scan that has more",
+    )
     parser.add_argument(
         "--series", action="store_true", help="show the numbered files beside FILE at the frames of their numbers"
     )
@@ -59,6 +66,13 @@ def add_points_arguments(parser: argparse.ArgumentParser) -> None:
         choices=FLOAT_COLORS,
         default=FLOAT_COLORS[0],
         help="what a file's colours mean if they are floats",
+    )
+    parser.add_argument(
+        "--columns",
+        default="",
+        dest="text_columns",
+        metavar="NAMES",
+        help="what the columns of a text are, in quotes and with blanks between; - leaves one out",
     )
     parser.add_argument(
         "--color-by",
@@ -91,7 +105,7 @@ def _import_files(options: argparse.Namespace) -> None:
     for path in options.files:
         path, scene = str(Path(path).absolute()), bpy.context.scene
         shown, offset = first_shown(path, scene) if options.series else (path, 0)
-        work = FileImport(shown, options, scene, options.float_colors, max(options.most, 0))
+        work = FileImport(shown, options, scene, Reading.of(options))
         try:
             work.run()
             made = work.place(bpy.context)
@@ -102,9 +116,7 @@ def _import_files(options: argparse.Namespace) -> None:
         if options.color_by:
             getattr(made, OBJECT_SETTINGS).color_by = options.color_by
         if options.series:
-            work.notes.append(
-                begin_series(made, path, offset, options, options.float_colors, max(options.most, 0), shown)
-            )
+            work.notes.append(begin_series(made, path, offset, options, Reading.of(options), shown))
         print(f"{work.name}: {len(work.surfels):,} surfels", flush=True)
         for note in work.notes:
             print(f"{work.name}: {note}", flush=True)

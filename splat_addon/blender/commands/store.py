@@ -15,6 +15,7 @@ from ...doubts import doubts_of_rounding
 from ...streaming import PORTION, described, write_blocks
 from ...streaming.layout import SUFFIX
 from ...surfels import Surfels, portions
+from ..conversion.file_import import Reading
 from ..conversion.file_storing import FileStoring
 from ..conversion.points_settings import viewpoint
 from ..geometry.sources import is_surfel_object
@@ -62,9 +63,9 @@ def run(options: argparse.Namespace) -> Iterator[Path]:
 
 def _store_file(options: argparse.Namespace, out: Path) -> tuple[int, list[str]]:
     eye = viewpoint(options, bpy.context.scene)
-    storing = FileStoring(
-        options.file, options, options.float_colors, options.color_by or "COLOR", None if eye is None else np.array(eye)
-    )
+    eye = None if eye is None else np.array(eye)
+    reading = Reading(options.float_colors, text_columns=options.text_columns)
+    storing = FileStoring(options.file, options, reading, options.color_by or "COLOR", eye)
     try:
         return storing.write(out, _printed()), storing.notes
     except OSError as error:

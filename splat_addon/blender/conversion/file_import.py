@@ -6,13 +6,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 import bpy
 import numpy as np
 from mathutils import Matrix
 
 from ...doubts import doubts
-from ...interchange import Gaussians, Points, read_contents, scanner_path
+from ...interchange import FLOAT_COLORS, Gaussians, Points, read_contents, scanner_path
 from ...sampling import surfels_from_points
 from ...surfels import Surfels
 from ..geometry.attributes import fill, offset_of
@@ -29,19 +30,34 @@ from .surfel_objects import active_collection, add_surfel_object
 _READING = 0.2
 
 
+class Reading(NamedTuple):
+    """How files are read. most_points: to take of a scan that has more; 0: all. text_columns: names of those of a text,
+    with blanks between; by default as it tells them."""
+
+    float_colors: str = FLOAT_COLORS[0]
+    most_points: int = 0
+    text_columns: str = ""
+
+    @classmethod
+    def of(cls, settings) -> Reading:
+        """How anything that has these names says it."""
+        return cls(*(getattr(settings, name) for name in cls._fields))
+
+    def keywords(self) -> dict:
+        """The arguments of `read_contents`."""
+        columns = tuple(self.text_columns.split())
+        return {"float_colors": self.float_colors, "most": self.most_points, "text_columns": columns}
+
+
 class FileImport:
     """`run` reads the file, in any thread; `place` then adds the object.
 
     path: of the file. share: the finished share. points: how many were read so far. is_cancelled: set from outside.
     """
 
-    def __init__(
-        self, path: str, properties: PointsProperties, scene: bpy.types.Scene, float_colors: str, most: int = 0
-    ):
-        """most: points to take of a scan that has more; 0: all."""
+    def __init__(self, path: str, properties: PointsProperties, scene: bpy.types.Scene, reading: Reading):
         self.name, self.path = Path(path).name, path
-        self._keywords, self._flatness, self._colors = keywords(properties), properties.flatness, float_colors
-        self._most = most
+        self._keywords, self._flatness, self._reading = keywords(properties), properties.flatness, reading
         self._eye, self._offset = viewpoint(properties, scene), scene_offset(scene)
         self._attributes, self._rows, self._scanner_path = {}, None, None
         self._is_captured, self._has_colors, self._scanner = True, True, None
@@ -56,7 +72,7 @@ class FileImport:
             self.points = points
             return self._go_on(_READING * share, told)
 
-        contents = read_contents(self.path, self._flatness, self._colors, reading, self._most)
+        contents = read_contents(self.path, self._flatness, progress=reading, **self._reading.keywords())
         if isinstance(contents, Points):
             self.surfels = self._surfels_of(contents, told)
         else:

@@ -12,6 +12,7 @@ from ...interchange import PlyPortions, is_surfel_ply, point_pieces, read_conten
 from ...streaming import PORTION, write_blocks
 from ...surfels import portions
 from ..geometry.scene_offset import offset_for_scan
+from .file_import import Reading
 from .points_settings import PointsProperties, keywords
 from .scan_storing import StoredScan
 
@@ -26,10 +27,10 @@ class FileStoring:
     notes: sentences about what was left out, assumed or estimated.
     """
 
-    def __init__(self, source: str | os.PathLike, properties: PointsProperties, float_colors: str, color_by: str,
+    def __init__(self, source: str | os.PathLike, properties: PointsProperties, reading: Reading, color_by: str,
                  eye: np.ndarray | None = None, scene_offset: np.ndarray | None = None):  # fmt: skip
         """eye: (3,) what normals face, None for the scanner. scene_offset: (3,) of the scene that the file is for."""
-        self._source, self._colors, self._color_by, self._eye = source, float_colors, color_by, eye
+        self._source, self._reading, self._color_by, self._eye = source, reading, color_by, eye
         self._keywords, self._flatness = keywords(properties), properties.flatness
         self._scene_offset = np.zeros(3) if scene_offset is None else scene_offset
         self.offset: np.ndarray | None = None
@@ -39,7 +40,10 @@ class FileStoring:
         """Write the file; returns the number of surfels. progress: as of `streaming.write_blocks`. Raises
         ReadingCancelled, SamplingCancelled, WritingCancelled, ValueError, OSError."""
         pieces = point_pieces(
-            self._source, self._colors, lambda _, share: progress(_READ * share, "Reading") is not False
+            self._source,
+            self._reading.float_colors,
+            lambda _, share: progress(_READ * share, "Reading") is not False,
+            self._reading.keywords()["text_columns"],
         )
         if pieces is None:
             return self._write_surfels(path, progress)
@@ -55,6 +59,6 @@ class FileStoring:
             count = write_blocks(path, parts, progress, expected=len(parts))
             self.notes = parts.notes()
             return count
-        contents = read_contents(self._source, self._flatness, self._colors)
+        contents = read_contents(self._source, self._flatness, self._reading.float_colors)
         self.notes = contents.notes()
         return write_blocks(path, portions(contents.surfels, PORTION), progress, expected=len(contents.surfels))

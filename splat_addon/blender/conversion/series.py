@@ -24,7 +24,7 @@ from ..geometry.attributes import fill, numbers_of, offset_of
 from ..ids import SERIES, SERIES_ORIGIN
 from ..registration import with_property
 from ..spoken import said
-from .file_import import FileImport
+from .file_import import FileImport, Reading
 from .points_settings import PointsProperties
 
 
@@ -57,6 +57,7 @@ class SurfelSeries(PointsProperties, bpy.types.PropertyGroup):
     most_points: IntProperty(
         name="At Most", description="Points to take of a file that has more, evenly; 0 takes all", default=0, min=0
     )
+    text_columns: StringProperty(name="Columns", description="What the columns of text files are, with blanks between")
     shown: StringProperty(options={"HIDDEN"})
     why_not: StringProperty(options={"HIDDEN"})
 
@@ -83,13 +84,7 @@ def first_shown(path: str, scene: bpy.types.Scene) -> tuple[str, int]:
 
 
 def begin_series(
-    made: bpy.types.Object,
-    path: str,
-    offset: int,
-    properties: PointsProperties,
-    float_colors: str,
-    most: int,
-    shown: str,
+    made: bpy.types.Object, path: str, offset: int, properties: PointsProperties, reading: Reading, shown: str
 ) -> str:
     """Let the mesh of a new object show a series from now on. shown: the file whose surfels it has. Returns a
     sentence."""
@@ -97,7 +92,9 @@ def begin_series(
     series = series_of(mesh)
     for name in PointsProperties.__annotations__:
         setattr(series, name, getattr(properties, name))
-    series.float_colors, series.most_points, series.frame_offset = float_colors, most, offset
+    for name, value in reading._asdict().items():
+        setattr(series, name, value)
+    series.frame_offset = offset
     mesh[SERIES_ORIGIN] = (np.array(made.matrix_world.translation, np.float64) + offset_of(mesh)).tolist()
     series.shown = _told(series, shown)
     series.path = path  # the last, because it begins to show frames
@@ -129,7 +126,7 @@ def show_frame(mesh: bpy.types.Mesh, scene: bpy.types.Scene) -> None:
         told = _told(series, path)
         if told == series.shown:
             return
-        work = FileImport(path, series, scene, series.float_colors, series.most_points)
+        work = FileImport(path, series, scene, Reading.of(series))
         work.run()
         work.refill(mesh, scene, numbers_of(mesh, SERIES_ORIGIN, 3, np.zeros(3)))
         series.why_not = ""
@@ -143,7 +140,7 @@ def show_frame(mesh: bpy.types.Mesh, scene: bpy.types.Scene) -> None:
 def _told(series: SurfelSeries, path: str) -> str:
     """What decides which surfels a mesh shows."""
     status = os.stat(path)
-    settings = [getattr(series, name) for name in (*PointsProperties.__annotations__, "float_colors", "most_points")]
+    settings = [getattr(series, name) for name in (*PointsProperties.__annotations__, *Reading._fields)]
     return f"{path} {status.st_mtime_ns} {status.st_size} {settings}"
 
 

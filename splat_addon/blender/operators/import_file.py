@@ -13,10 +13,10 @@ from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper, poll_file_object_drop
 from mathutils import Matrix
 
-from ...interchange import SHARED_SUFFIXES, SUFFIXES
+from ...interchange import SHARED_SUFFIXES, SUFFIXES, text_columns_of
 from ...streaming import id_of
 from ...streaming.layout import MAGIC, SUFFIX
-from ..conversion.file_import import FileImport
+from ..conversion.file_import import FileImport, Reading
 from ..conversion.file_storing import FileStoring
 from ..conversion.placement import placed
 from ..conversion.points_settings import (
@@ -83,6 +83,14 @@ tell"""
         soft_max=10_000_000,
     )
 
+    text_columns: StringProperty(
+        name="Columns",
+        description=(
+            "What the columns of a text file are, with blanks between: x y z, red green blue, nx ny nz, intensity; "
+            "and - for one to leave out. Empty takes what the file says, or a guess"
+        ),
+    )
+
     float_colors: EnumProperty(
         name="Float Colors",
         description="What the file's colours mean if they are floats and the file does not say it",
@@ -115,6 +123,7 @@ tell"""
         self.layout.use_property_decorate = False
         for name in ("has_scan_look", "keeps_in_file", "is_series", "most_points", "float_colors"):
             self.layout.prop(self, name)
+        self._draw_text_columns()
         header, body = self.layout.panel("surfels_import_gaussians")
         header.label(text="Gaussian Splats")
         if body:
@@ -123,6 +132,12 @@ tell"""
         header.label(text="Points")
         if body:
             draw_points_properties(body, self)
+
+    def _draw_text_columns(self):
+        """Draw what the columns of the chosen file are taken as, if it is text, and what corrects it."""
+        with suppress(OSError, ValueError):
+            if found := text_columns_of(absolute(self.filepath)):
+                self.layout.prop(self, "text_columns", placeholder=" ".join(found))
 
     @property
     def _name(self) -> str:
@@ -160,11 +175,11 @@ tell"""
         if self.is_series:
             path, self._frame_offset = first_shown(path, context.scene)
         if not self.keeps_in_file:
-            return FileImport(path, self, context.scene, self.float_colors, self.most_points)
+            return FileImport(path, self, context.scene, Reading.of(self))
         # repeated from the redo panel, it replaces the file whose object was undone
         own = getattr(self, "_kept", "")
         kept = absolute(f"//{Path(self._name).stem}{SUFFIX}")
-        return Keeping(path, kept, self, context.scene, self.float_colors, own)
+        return Keeping(path, kept, self, context.scene, Reading.of(self), own)
 
     def _finish(self, context, work):
         if isinstance(work, FileImport):
@@ -176,9 +191,7 @@ tell"""
             self._tell(work.notes)
             if self.is_series:
                 path = relative_path(absolute(self.filepath))
-                self._tell(
-                    [begin_series(made, path, self._frame_offset, self, self.float_colors, self.most_points, work.path)]
-                )
+                self._tell([begin_series(made, path, self._frame_offset, self, Reading.of(self), work.path)])
                 # Blender draws nothing else while a render reads its next frame
                 context.scene.render.use_lock_interface = True
             self._tell_place(made, work.surfels)
@@ -234,14 +247,14 @@ class Keeping(Writing):
     """A file on its way to a file of blocks. offset: as of `FileStoring`."""
 
     def __init__(
-        self, source: str, path: str, properties: PointsProperties, scene: bpy.types.Scene, float_colors: str, own=""
+        self, source: str, path: str, properties: PointsProperties, scene: bpy.types.Scene, reading: Reading, own=""
     ):
         """The arguments are those of `FileImport` and `Writing`. Raises OSError if the file cannot be read."""
         os.stat(source)
         super().__init__(path, (), 0, own)
         eye = viewpoint(properties, scene)
         eye = None if eye is None else np.array(eye)
-        self._storing = FileStoring(source, properties, float_colors, "COLOR", eye, scene_offset(scene))
+        self._storing = FileStoring(source, properties, reading, "COLOR", eye, scene_offset(scene))
 
     @property
     def offset(self) -> np.ndarray | None:

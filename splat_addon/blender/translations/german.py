@@ -1358,4 +1358,15 @@ GERMAN = {
     "Points to take of a file that has more, evenly; 0 takes all": (
         "Punkte, die von einer Datei mit mehr genommen werden, gleichmäßig verteilt; 0 nimmt alle"
     ),
+    "Columns": "Spalten",
+    (
+        "What the columns of a text file are, with blanks between: x y z, red green blue, nx ny nz, "
+        "intensity; and - for one to leave out. Empty takes what the file says, or a guess"
+    ): (
+        "Was die Spalten einer Textdatei sind, mit Leerzeichen dazwischen: x y z, red green blue, nx ny nz, "
+        "intensity; und - für eine, die weggelassen wird. Leer nimmt, was die Datei sagt, oder eine Vermutung"
+    ),
+    "What the columns of text files are, with blanks between": (
+        "Was die Spalten von Textdateien sind, mit Leerzeichen dazwischen"
+    ),
 }

@@ -41,6 +41,16 @@ def test_plain_files_are_surfels_alone_and_their_colors_may_be_chosen(surfels_co
     assert not bpy.context.scene.surfel_splatting.use_eye_dome
 
 
+def test_columns_of_text_may_be_said_and_points_be_fewer(surfels_command, tmp_path):
+    (tmp_path / "a.xyz").write_text("".join(f"{k % 40} 7 {k // 40} 0\n" for k in range(1600)))
+    options = "--columns", "y - x z", "--most", 400, "--isolated", "keep", "--plain", "--out", tmp_path / "a.blend"
+    code, said = surfels_command("points", tmp_path / "a.xyz", *options)
+    assert code == 0 and "Took 400 of 1,600 points" in said
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "a.blend"))
+    surfels, _ = read_surfels(bpy.data.objects[0].data)
+    assert len(surfels) == 400 and np.ptp(surfels.positions, axis=0).round(2).tolist() == [39, 36, 0]
+
+
 def test_a_file_that_cannot_be_read_is_named_and_nothing_is_saved(surfels_command, tmp_path):
     (tmp_path / "bad.las").write_bytes(b"LASF")
     code, said = surfels_command("points", tmp_path / "bad.las", "--out", tmp_path / "scan.blend")

@@ -8,7 +8,7 @@ from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Vector
 
 from scan_files.formats import las_file, ptx_scan
-from splat_addon.blender.conversion.file_import import FileImport
+from splat_addon.blender.conversion.file_import import FileImport, Reading
 from splat_addon.blender.conversion.points_settings import PointsProperties
 from splat_addon.blender.geometry.scan_attributes import write_scan_attributes
 from splat_addon.blender.geometry.scene_offset import scene_offset
@@ -169,7 +169,7 @@ class Settings(PointsProperties):
 @pytest.mark.parametrize(("stage", "error"), [("Reading 400 points", ReadingCancelled), ("0%", SamplingCancelled)])
 def test_esc_ends_reading_and_converting(stage, error, tmp_path):
     (tmp_path / "tile").write_bytes(tile(CORNERS[0])[0])
-    work = FileImport(str(tmp_path / "tile"), Settings(), bpy.context.scene, "DISPLAY")
+    work = FileImport(str(tmp_path / "tile"), Settings(), bpy.context.scene, Reading())
 
     def press(share):
         work.is_cancelled |= stage in work.status()

@@ -8,6 +8,7 @@ import bpy
 import numpy as np
 import pytest
 
+from splat_addon.blender.conversion.file_import import Reading
 from splat_addon.blender.export.streams import Streams
 from splat_addon.blender.geometry import surfel_files
 from splat_addon.blender.geometry.attributes import write_surfels
@@ -223,7 +224,7 @@ def new_keeping(folder, own=""):
     """scan.ply in a folder, on its way to a file of blocks."""
     source, path = (str(folder / f"scan.{end}") for end in ("ply", "surfelblocks"))
     scene = bpy.context.scene
-    return import_file.Keeping(source, path, scene.surfel_points_conversion, scene, "DISPLAY", own)
+    return import_file.Keeping(source, path, scene.surfel_points_conversion, scene, Reading(), own)
 
 
 @pytest.mark.parametrize("is_pressed", [False, True])
