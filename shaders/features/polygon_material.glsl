@@ -1,5 +1,6 @@
 // References: none needed.
-// Summary: material (if polygons differ in it) and light set of the visible polygon.
+// Summary: material (if polygons differ in it) and light set of the visible polygon. Hooks: `own` is what the corners
+//          have, `looked_up` what images have in its place.
 
 #part polygons.frag, materials
 void materials_own(inout vec3 own) {
@@ -10,6 +11,7 @@ void materials_own(inout vec3 own) {
 vec3 polygon_own() {
   vec3 own = vec3(0.0);
   #hook own(own)
+  #hook looked_up(own)
   return own;
 }
 

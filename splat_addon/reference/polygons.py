@@ -97,6 +97,20 @@ def _bent(instance: PolygonInstance, triangle, shares, normal_matrix, side) -> n
     return normals / np.linalg.norm(normals, axis=1, keepdims=True)
 
 
+def _gloss(instance: PolygonInstance, triangle, shares, surface: np.ndarray) -> None:
+    """Fill in the roughness and metallic, the first columns of (n, columns), that images have at hits."""
+    rows = 3 * triangle[:, None] + np.arange(3)
+    uvs = np.einsum("rk,rkc->rc", shares, instance.polygons.glosses.astype(np.float64)[rows])
+    slots = np.minimum(instance.polygons.materials[rows[:, 0]], len(instance.gloss_maps) - 1)
+    of_slot = np.array([*instance.gloss_maps, None], object)[slots]
+    for gloss in set(of_slot) - {None}:
+        at = of_slot == gloss
+        found = point_colors(SurfaceTexture(gloss.image), uvs[at])
+        for column, factor in enumerate((gloss.roughness, gloss.metallic)):
+            if factor is not None:
+                surface[at, column] = np.clip(factor * found[:, column], 0, 1)
+
+
 def _alphas(instance: PolygonInstance, triangle: np.ndarray, shares: np.ndarray) -> np.ndarray:
     """(n,) alpha of the texture at hits, 1 for textures that cut no holes."""
     alphas = np.ones(len(triangle))
@@ -190,6 +204,8 @@ def _take(instance, camera, corners, rays, triangle, shares, direction, found: H
     for columns, own in ((0, shape.roughness), (1, shape.metallic), (slice(3, 6), shape.emission)):
         if own is not None:
             surface[:, columns] = mean(own)
+    if instance.is_glossed:
+        _gloss(instance, triangle, shares, surface)
     found.surface[rays] = surface
 
 

@@ -13,6 +13,7 @@ from .presets import PRESETS, SCAN_LOOK, Preset
 from .renderer import RenderCancelled, Renderer, Shown
 from .scene import (
     Finish,
+    GlossTexture,
     Instance,
     LineStyle,
     Material,
@@ -52,6 +53,7 @@ __all__ = (
     "Finish",
     "Frame",
     "FramePlan",
+    "GlossTexture",
     "Instance",
     "Lens",
     "Light",

@@ -8,7 +8,7 @@ camera needs. `deform` lets surfels follow a mesh; points without faces become s
 """
 
 from ..images import Image
-from .attributes.corners import corner_values, normal_map_texture
+from .attributes.corners import corner_values, gloss_textures, normal_map_texture
 from .attributes.repainting import Repainting, has_normal_map, places_in_triangles
 from .blocks import Block, joined_blocks, read_block, read_request, sample_block, write_blocks
 from .camera_density import NotSeenError, Outline, camera_spacing, least_camera_spacings, outline
@@ -67,6 +67,7 @@ __all__ = [
     "drop_unusable",
     "edge_samples",
     "flat_extents",
+    "gloss_textures",
     "grid_spacing",
     "has_normal_map",
     "have_same_values",

@@ -22,6 +22,7 @@ from splat_addon.rendering import (
     Equirectangular,
     EyeDome,
     Finish,
+    GlossTexture,
     Instance,
     Lens,
     Light,
@@ -264,7 +265,8 @@ def cut_out(scene, camera):
 
 
 def bumpy(scene, camera):
-    """The scene with a normal map and holes on the floor, whose slot is past the last material and means that one."""
+    """The scene with a normal map, a map of roughness and metallic, and holes on the floor, whose slot is past the last
+    material and means that one."""
     (floor, other) = scene.polygons
     place, tangent = floor.polygons.positions[:, :2] * 0.7, (1.0, 0, 0)
     bumps = np.concatenate([place, np.tile((*tangent, 1.0), (len(place), 1))], axis=1)
@@ -274,8 +276,10 @@ def bumpy(scene, camera):
     image = Image(np.concatenate([normals / 2 + 0.5, np.ones((64, 64, 1))], axis=2))
     paper, bump = SurfaceTexture(Image(holed_paper()), is_cut_out=True), NormalTexture(image, 0.8)
     slots = np.ones(len(place), np.int32)
-    shape = replace(floor.polygons, uvs=place, bumps=bumps, materials=slots)
-    floor = replace(floor, shape=shape, textures=(paper,), normal_maps=(bump,))
+    own = {"roughness": np.full(len(place), 0.5, np.float32), "glosses": place}
+    shape = replace(floor.polygons, uvs=place, bumps=bumps, materials=slots, **own)
+    gloss = GlossTexture(Image(scenes.checks(64, 8)), 0.8, None)
+    floor = replace(floor, shape=shape, textures=(paper,), normal_maps=(bump,), gloss_maps=(gloss,))
     return replace(lit(scene, camera)[0], polygons=(floor, other)), camera
 
 

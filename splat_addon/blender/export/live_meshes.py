@@ -19,7 +19,7 @@ from typing import NamedTuple
 import bpy
 import numpy as np
 
-from ...rendering import Instance, Material, NormalTexture, PolygonInstance, Polygons, SurfaceTexture
+from ...rendering import Instance, Material, PolygonInstance, Polygons
 from ...rendering.detail.hierarchies import replaced
 from ...rendering.scene import Placed, placed_at
 from ...sampling import (
@@ -44,7 +44,7 @@ from ..geometry.reading import readable_mesh
 from ..geometry.sources import mesh_key
 from ..geometry.split_meshes import MeshParts, parts_by_group
 from ..materials.slots import slot_materials
-from ..materials.surface_textures import kept_normal_maps, kept_textures
+from ..materials.surface_textures import MAPS, kept_maps
 from ..mesh_sampling_settings import Form
 from ..meshes.mesh_extraction import ExtractedMesh, Topology, read_mesh, read_topology
 from ..meshes.mesh_polygons import left_out_of_polygons, mesh_polygons, needs_surfels
@@ -95,8 +95,7 @@ class LiveMesh:
     content: ExtractedMesh | None = None
     materials: tuple[Material, ...] = ()
     held: list[int] = field(default_factory=list)
-    textures: tuple[SurfaceTexture | None, ...] = ()
-    normal_maps: tuple[NormalTexture | None, ...] = ()
+    maps: dict[str, tuple] = field(default_factory=dict)
     looks: dict[str, bool] = field(default_factory=dict)
     places: list[Place] = field(default_factory=list)
     owner: str = ""
@@ -188,13 +187,10 @@ class LiveMesh:
         # None: a matrix of zeros leaves nothing to see
         return replace(placed, split_length=self.spacing * _stretch(placed.matrix_world) / pixels or None)
 
-    def kept_textures(self) -> tuple[SurfaceTexture | None, ...]:
-        self.textures = kept_textures(self.textures, self.content.triangles.surfaces)
-        return self.textures
-
-    def kept_normal_maps(self) -> tuple[NormalTexture | None, ...]:
-        self.normal_maps = kept_normal_maps(self.normal_maps, self.content.triangles.surfaces)
-        return self.normal_maps
+    def looked_up(self, field: str) -> tuple:
+        """What is looked up of its surfaces, for one field of `MAPS`."""
+        self.maps[field] = kept_maps(self.maps.get(field, ()), self.content.triangles.surfaces, field)
+        return self.maps[field]
 
     def spacing_for(self, density: dict[str, float], depsgraph: bpy.types.Depsgraph) -> float:
         """Spacing in the mesh's own units: as fine as its most demanding place requests, or unchanged if that is close
@@ -295,7 +291,7 @@ class LiveMeshes:
             before, live.shown = live.shown, (sampled, whole)
             if before is not None:
                 replaced(before[1], live.shown[1])
-        textures = live.kept_textures() if sampled.has_uvs else ()
+        textures = live.looked_up("textures") if sampled.has_uvs else ()
         self.counts["meshes"] += 1
         self.counts["surfels"] += len(live.shown[1])
         return live.placed(partial(Instance, live.shown[1], textures=textures), live.sampled_at)
@@ -308,7 +304,7 @@ class LiveMeshes:
         self.counts["triangles"] += len(mesh)
         for sentence in left_out_of_polygons(live.owner, mesh):
             notes.add(sentence)
-        looked_up = {"textures": live.kept_textures(), "normal_maps": live.kept_normal_maps()}
+        looked_up = {field: live.looked_up(field) for field in MAPS}
         return [
             instance
             for shape in live.drawn[1]

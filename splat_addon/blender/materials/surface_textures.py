@@ -7,14 +7,17 @@ The surfels' own coordinates place the image on the surface as the material did 
 
 from __future__ import annotations
 
+import weakref
+from weakref import WeakKeyDictionary
+
 import bpy
 import numpy as np
 
-from ...rendering import NormalTexture, SurfaceTexture
-from ...sampling import Image, Surface, normal_map_texture
+from ...rendering import GlossTexture, NormalTexture, SurfaceTexture
+from ...sampling import Image, Surface, Texture, gloss_textures, normal_map_texture
 from ...surfels import OPAQUE
 from .graphs.channels import read_channel
-from .graphs.flattened import flattened
+from .graphs.flattened import at_pixels, flattened
 from .mean_surfaces import mean_of
 from .mesh_layers import MeshLayers
 from .node_products import ImageSource
@@ -44,21 +47,46 @@ def normal_map_of(surface: Surface) -> NormalTexture | None:
     return None if texture is None else NormalTexture(texture.image, surface.normal_map.strength)
 
 
-def kept_normal_maps(
-    kept: tuple[NormalTexture | None, ...], surfaces: tuple[Surface, ...]
-) -> tuple[NormalTexture | None, ...]:
-    """The normal maps of a mesh's polygons; the same tuple as `kept` while nothing changed."""
-    found = tuple(normal_map_of(surface) for surface in surfaces)
-    is_same = len(kept) == len(found) and all(map(_are_same, kept, found))
-    return kept if is_same else found
+def gloss_map_of(surface: Surface) -> GlossTexture | None:
+    """The map of roughness and metallic of a surface's polygons; None if neither is a single image."""
+    textures = gloss_textures(surface)
+    if textures == (None, None):
+        return None
+    channels = zip((surface.roughness, surface.metallic), textures, strict=True)
+    return GlossTexture(_in_one(textures), *(None if texture is None else c.value[0] for c, texture in channels))
 
 
-def kept_textures(
-    kept: tuple[SurfaceTexture | None, ...], surfaces: tuple[Surface, ...]
-) -> tuple[SurfaceTexture | None, ...]:
-    """The textures of a mesh's surfels; the same tuple as `kept` while nothing changed, because the device identifies
-    it by that."""
-    found = tuple(texture_of(surface) for surface in surfaces)
+#: The first of two images -> the other, weakly, the numbers that were taken, and the image of both.
+_joined: WeakKeyDictionary[Image, tuple] = WeakKeyDictionary()
+
+
+def _in_one(textures: tuple[Texture | None, Texture | None]) -> Image:
+    """An image with numbers of two in its red and green; the same as long as the two are."""
+    first, *others = {id(t.image): t.image for t in textures if t is not None}.values()
+    other, weights = others[0] if others else first, tuple(t and t.weights for t in textures)
+    kept = _joined.get(first)
+    if kept is not None and kept[0]() is other and kept[1] == weights:
+        return kept[2]
+    height, width = (max(image.pixels.shape[axis] for image in (first, other)) for axis in (0, 1))
+    pixels = np.ones((height, width, 4), np.float32)
+    for channel, texture in enumerate(textures):
+        if texture is not None:
+            pixels[..., channel] = at_pixels(texture.image, width, height).T.reshape(height, width, 4) @ np.float32(
+                texture.weights
+            )
+    made = Image(pixels, first.extension, first.interpolation)
+    _joined[first] = weakref.ref(other), weights, made
+    return made
+
+
+#: field of `PolygonInstance` -> function of a surface that gives what is looked up there
+MAPS = {"textures": texture_of, "normal_maps": normal_map_of, "gloss_maps": gloss_map_of}
+
+
+def kept_maps(kept: tuple, surfaces: tuple[Surface, ...], field: str) -> tuple:
+    """What is looked up of a mesh's surfaces, for one field of `MAPS`; the same tuple as `kept` while nothing changed,
+    because the device identifies it by that."""
+    found = tuple(MAPS[field](surface) for surface in surfaces)
     is_same = len(kept) == len(found) and all(map(_are_same, kept, found))
     return kept if is_same else found
 
@@ -152,11 +180,13 @@ def _is_alpha_of(image: bpy.types.Node, shader: Shader, mix: TransparentMix | No
     return is_own or (mix is not None and mix.is_alpha_of(image))
 
 
-def _are_same(a: SurfaceTexture | NormalTexture | None, b: SurfaceTexture | NormalTexture | None) -> bool:
+def _are_same(
+    a: SurfaceTexture | NormalTexture | GlossTexture | None, b: SurfaceTexture | NormalTexture | GlossTexture | None
+) -> bool:
     return a is b or (a is not None and b is not None and _same(a, b))
 
 
-def _same(a: SurfaceTexture | NormalTexture, b: SurfaceTexture | NormalTexture) -> bool:
+def _same(a: SurfaceTexture | NormalTexture | GlossTexture, b: SurfaceTexture | NormalTexture | GlossTexture) -> bool:
     return (a.factor, a.is_cut_out) == (b.factor, b.is_cut_out) and (
         a.image is b.image or _same_image(a.image, b.image)
     )

@@ -11,7 +11,7 @@ import numpy as np
 from ...rendering import Polygons
 from ...rendering.scene.polygons import MAX_TRIANGLES
 from ...rendering.scene.strays import middle_of
-from ...sampling import Computed, Surface, Texture, TriangleMesh, corner_values, normal_map_texture
+from ...sampling import Computed, Surface, Texture, TriangleMesh, corner_values, gloss_textures, normal_map_texture
 from ...surfels import OPAQUE
 from ..materials.material_surfaces import CHANNEL_NAMES
 from ..materials.surface_textures import has_holes
@@ -58,10 +58,11 @@ def left_out_of_polygons(owner: str, mesh: TriangleMesh) -> Iterator[str]:
 
 def _only_at_corners(surface: Surface) -> Iterator[str]:
     """The channels with images that polygons look up at their corners alone."""
+    seen = dict(zip(("roughness", "metallic"), gloss_textures(surface), strict=True)) | {"color": surface.color_texture}
     for name in ("color", "roughness", "metallic", "emission"):
         channel = getattr(surface, name)
         has_image = channel is not None and any(isinstance(factor, Texture | Computed) for factor in channel.factors)
-        if has_image and not (name == "color" and surface.color_texture is not None):
+        if has_image and seen.get(name) is None:
             yield name
 
 

@@ -103,8 +103,7 @@ def draw_polygons(
     yield from _draw_pooled(tile, p, target, items, programs, viewport)
     for batch in batches_of(tile, items):
         placed = batch.item(0)
-        kinds = {"cut_out": placed.instance.is_cut_out, "bumped": placed.instance.is_bumped}
-        more = tuple(kind for kind, is_so in kinds.items() if is_so)
+        more = tuple(kind for kind in ("cut_out", "bumped", "glossed") if getattr(placed.instance, f"is_{kind}"))
         if len(batch) == 1:
             program = yield from programs.of(*more)
             for which in triangle_runs(placed, tile.camera):

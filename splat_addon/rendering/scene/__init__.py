@@ -2,12 +2,13 @@
 """The scene and the camera as plain values, independent of passes and devices."""
 
 from .finish import Finish
-from .material import Material, NormalTexture, SurfaceTexture
+from .material import GlossTexture, Material, NormalTexture, SurfaceTexture
 from .scene import Instance, Placed, PolygonInstance, Scene, placed_at
 from .style import LineStyle, Style
 
 __all__ = (
     "Finish",
+    "GlossTexture",
     "Instance",
     "LineStyle",
     "Material",

@@ -186,7 +186,7 @@ def _varied(shape: Polygons, of: np.ndarray, shares: np.ndarray, origin: np.ndar
         flat = values[rows].astype(np.float64).reshape(len(rows), 3, math.prod(values.shape[1:]))
         return np.einsum("nks,nsc->nkc", shares, flat).reshape(-1, *values.shape[1:])
 
-    names = ("normals", "colors", "roughness", "metallic", "emission", "uvs", "bumps")
+    names = ("normals", "colors", "roughness", "metallic", "emission", "uvs", "bumps", "glosses")
     fields = {name: mixed(values) for name in names if (values := getattr(shape, name)) is not None}
     if shape.bumps is not None:
         fields["bumps"][:, 5] = np.repeat(shape.bumps[of, 5], 3)

@@ -69,6 +69,25 @@ class SurfaceTexture:
 
 
 @dataclass(frozen=True, eq=False)
+class GlossTexture:
+    """Roughness and metallic of polygons: red and green of an image, times factors from 0 to 1; None leaves what the
+    corners have."""
+
+    image: Image
+    roughness: float | None = 1.0
+    metallic: float | None = 1.0
+    is_cut_out = False
+
+    def __post_init__(self):
+        check_range("Factors of roughness and metallic", [f for f in (self.roughness, self.metallic) if f], 0.0, 1.0)
+
+    @property
+    def factor(self) -> tuple[float, float, float]:
+        """Both, where textures have a factor; -1 for None."""
+        return (*(-1.0 if factor is None else factor for factor in (self.roughness, self.metallic)), 0.0)
+
+
+@dataclass(frozen=True, eq=False)
 class NormalTexture:
     """A normal map in tangent space: normals are 2 * colour - 1. strength: 0 leaves the normal as it is."""
 

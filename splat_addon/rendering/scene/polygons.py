@@ -22,7 +22,7 @@ TEXELS_PER_CORNER = 3
 #: Triangles, one after the other, that are left out of a picture together.
 BLOCK = 1024
 
-#: field -> (columns, dtype) of one corner; one column is stored flat. The last six fields are optional.
+#: field -> (columns, dtype) of one corner; one column is stored flat. The last seven fields are optional.
 _LAYOUT = {
     "positions": (3, np.float32),
     "normals": (3, np.float32),
@@ -34,8 +34,9 @@ _LAYOUT = {
     "uvs": (2, np.float32),
     "seams": (1, np.uint8),
     "bumps": (6, np.float32),
+    "glosses": (2, np.float32),
 }
-_OPTIONAL = ("roughness", "metallic", "emission", "uvs", "seams", "bumps")
+_OPTIONAL = ("roughness", "metallic", "emission", "uvs", "seams", "bumps", "glosses")
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +50,7 @@ class Polygons(Shape):
         at neither of the triangle's edges there; textures are not looked up beyond. None: 0 everywhere.
     bumps: (3 T, 6) u and v in the instance's normal maps, the unit tangent, and the sign of the bitangent
         cross(normal, tangent); a tangent of zero leaves the normal as it is. None: no normal maps.
+    glosses: (3 T, 2) u and v in the instance's maps of roughness and metallic. None: no such maps.
 
     Raises ValueError with one sentence for a wrong shape, a number that is not finite, or too many triangles.
     """
@@ -59,6 +61,7 @@ class Polygons(Shape):
     materials: np.ndarray
     seams: np.ndarray | None = None
     bumps: np.ndarray | None = None
+    glosses: np.ndarray | None = None
 
     def __post_init__(self):
         count = len(self.positions)
@@ -157,6 +160,13 @@ def pack_polygon_bumps(shape: Polygons) -> np.ndarray:
     texels = np.zeros((_rows(shape) * CORNERS_PER_ROW, 2, 4), np.float32)
     texels[: len(shape), 0, :3], texels[: len(shape), 1, :3] = shape.bumps[:, [0, 1, 5]], shape.bumps[:, 2:5]
     return texels.reshape(-1, 2 * CORNERS_PER_ROW, 4)
+
+
+def pack_polygon_glosses(shape: Polygons) -> np.ndarray:
+    """(rows, 512, 4) float32: uv, 0, 0."""
+    texels = np.zeros((_rows(shape) * CORNERS_PER_ROW, 4), np.float32)
+    texels[: len(shape), :2] = shape.glosses
+    return texels.reshape(-1, CORNERS_PER_ROW, 4)
 
 
 def _rows(shape: Polygons) -> int:

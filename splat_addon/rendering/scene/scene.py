@@ -20,7 +20,7 @@ from .camera import Camera
 from .environment import Environment
 from .light import MAX_LIGHT_SETS, Light
 from .light_probe import LightProbe
-from .material import Material, NormalTexture, SurfaceTexture
+from .material import GlossTexture, Material, NormalTexture, SurfaceTexture
 from .numbers import MAX_INDEX, MAX_LENGTH, MIN_LENGTH, check_lengths, check_radiance, check_range
 from .picture_sun import PictureSun
 from .polygons import Polygons
@@ -212,22 +212,25 @@ class Instance(Placed):
 class PolygonInstance(Placed):
     """Polygons placed in the world.
 
-    normal_maps: one for each of `textures`, or None, or nothing at all.
+    normal_maps, gloss_maps: one for each of `textures`, or None, or nothing at all.
     reaches: whether it consists of pieces of far-reaching triangles (`far_reaching`), which extend far beyond what is
         seen of them.
     """
 
     normal_maps: tuple[NormalTexture | None, ...] = ()
+    gloss_maps: tuple[GlossTexture | None, ...] = ()
     reaches: bool = False
 
     def __post_init__(self):
         super().__post_init__()
-        object.__setattr__(self, "normal_maps", tuple(self.normal_maps))
-        if self.normal_maps and len(self.normal_maps) != len(self.textures):
-            raise ValueError(
-                f"Polygons need as many normal maps as textures, which may be None: {len(self.textures)}, not "
-                f"{len(self.normal_maps)}."
-            )
+        for name in ("normal_maps", "gloss_maps"):
+            maps = tuple(getattr(self, name))
+            object.__setattr__(self, name, maps)
+            if maps and len(maps) != len(self.textures):
+                raise ValueError(
+                    f"Polygons need as many {name.replace('_', ' ')} as textures, which may be None: "
+                    f"{len(self.textures)}, not {len(maps)}."
+                )
 
     @property
     def polygons(self) -> Polygons:
@@ -244,8 +247,15 @@ class PolygonInstance(Placed):
         return self.shape.bumps is not None and any(bump is not None for bump in self.normal_maps)
 
     @property
-    def looked_up(self) -> tuple[SurfaceTexture | NormalTexture | None, ...]:
+    def is_glossed(self) -> bool:
+        """Whether images have any of its roughness or metallic."""
+        return self.shape.glosses is not None and any(gloss is not None for gloss in self.gloss_maps)
+
+    @property
+    def looked_up(self) -> tuple[SurfaceTexture | NormalTexture | GlossTexture | None, ...]:
         """Everything in its atlas."""
+        if self.is_glossed:
+            return (*self.textures, *(self.normal_maps or (None,) * len(self.textures)), *self.gloss_maps)
         return (*self.textures, *self.normal_maps) if self.is_bumped else self.textures
 
     @property

@@ -30,7 +30,7 @@ def may_share(placed: Placed) -> bool:
     """Whether an object may be in a pool: it is small, without holes, and has neither textures nor materials of its
     surfels' own."""
     is_apart = placed.is_textured or placed.shape.has_own_material or placed.is_merged or placed.has_holes
-    is_apart = is_apart or getattr(placed, "is_cut", False) or getattr(placed, "is_bumped", False)
+    is_apart = is_apart or any(getattr(placed, name, False) for name in ("is_cut", "is_bumped", "is_glossed"))
     return len(placed.shape) <= MOST_SPLATS and not is_apart
 
 

@@ -17,7 +17,7 @@ from ..detail.hierarchies import built_hierarchy, hierarchy_before, hierarchy_of
 from ..device import Device
 from ..device.interface import Pipeline, PipelineDescription, Texture
 from ..scene import Placed, SurfaceTexture
-from ..scene.polygons import Polygons, pack_polygon_bumps, pack_polygon_uvs, pack_polygons
+from ..scene.polygons import Polygons, pack_polygon_bumps, pack_polygon_glosses, pack_polygon_uvs, pack_polygons
 from .atlas import FORMAT, make_atlas
 from .cuts import Cuts
 from .loading import JobShare, Loading, Made, NotYet, Packed
@@ -96,6 +96,10 @@ class Resources:
     def polygon_bumps(self, polygons: Polygons) -> Texture:
         """The coordinates and tangents of normal maps, uploaded once."""
         return self._once(polygons, "bumps", None, lambda: self.data(pack_polygon_bumps(polygons)))
+
+    def polygon_glosses(self, polygons: Polygons) -> Texture:
+        """The coordinates of maps of roughness and metallic, uploaded once."""
+        return self._once(polygons, "glosses", None, lambda: self.data(pack_polygon_glosses(polygons)))
 
     def materials(
         self,

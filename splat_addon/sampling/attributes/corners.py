@@ -20,7 +20,8 @@ def corner_values(mesh: TriangleMesh) -> dict[str, np.ndarray]:
 
     Textures are averaged over about the area of the triangle. If a surface's color is a single image, colors hold only
     its constant, "uvs", (3 T, 2), are the coordinates at which to look up the image, and "seams", (3 T,) uint8, tell
-    where their charts end; likewise "bumps", (3 T, 6), for a normal map that is a single image (`Polygons`).
+    where their charts end; likewise "bumps", (3 T, 6), for a normal map that is a single image, and "glosses",
+    (3 T, 2), for images of the roughness and metallic that lie at one place (`Polygons`).
     """
     count = 3 * len(mesh)
     materials = np.zeros(count, int) if mesh.materials is None else np.repeat(mesh.materials, 3)
@@ -39,7 +40,27 @@ def corner_values(mesh: TriangleMesh) -> dict[str, np.ndarray]:
     maps = [normal_map_texture(surface) for surface in mesh.surfaces]
     if uvs is not None and any(maps):
         values["bumps"] = _bumps(mesh, maps, samples)
+    glosses = [next(filter(None, gloss_textures(surface)), None) for surface in mesh.surfaces]
+    if uvs is not None and any(glosses):
+        values["glosses"] = _texture_coordinates(glosses, samples)
     return values
+
+
+def gloss_textures(surface: Surface) -> tuple[Texture | None, Texture | None]:
+    """The single images of a surface's roughness and metallic; None for another channel, and for both if they lie at
+    different places or continue differently."""
+    found = tuple(_single_image(channel) for channel in (surface.roughness, surface.metallic))
+    if None in found:
+        return found
+    manners = [(t.layer, t.wraps, t.image.extension, t.image.interpolation) for t in found]
+    placements = [np.eye(3)[:2] if t.placement is None else t.placement for t in found]
+    is_one_place = manners[0] == manners[1] and np.array_equal(*placements)
+    return found if is_one_place else (None, None)
+
+
+def _single_image(channel: Channel | None) -> Texture | None:
+    factor = channel.factors[0] if channel is not None and len(channel.factors) == 1 else None
+    return factor if isinstance(factor, Texture) and factor.weights is not None else None
 
 
 def normal_map_texture(surface: Surface) -> Texture | None:

@@ -401,6 +401,54 @@ def test_a_normal_map_is_as_in_cycles(form, strength, look, picture, said, switc
     assert not as_cycles_has_it(smooth, ours, share=0.05)
 
 
+def add_gloss(material, sizes, turned=False) -> None:
+    """Roughness and metallic from green and blue of one image, or from two. turned: the second lies elsewhere."""
+    tree, made = material.node_tree, []
+    for size in sizes:
+        u, v = np.meshgrid(*2 * [(np.arange(size) + 0.5) / size * 2 * np.pi])
+        pixels = np.ones((size, size, 4), np.float32)
+        pixels[..., 1], pixels[..., 2] = 0.55 + 0.25 * np.sin(2 * u), 0.5 + 0.5 * np.sin(3 * v)
+        image = bpy.data.images.new("gloss", size, size, float_buffer=True)
+        image.colorspace_settings.name = "Non-Color"
+        image.pixels.foreach_set(pixels.ravel())
+        texture, parts = tree.nodes.new("ShaderNodeTexImage"), tree.nodes.new("ShaderNodeSeparateColor")
+        texture.image = image
+        tree.links.new(texture.outputs["Color"], parts.inputs[0])
+        made.append(parts)
+    if turned:
+        mapping, place = tree.nodes.new("ShaderNodeMapping"), tree.nodes.new("ShaderNodeTexCoord")
+        mapping.inputs["Rotation"].default_value[2] = 0.5
+        tree.links.new(place.outputs["UV"], mapping.inputs[0])
+        tree.links.new(mapping.outputs[0], made[-1].inputs[0].links[0].from_node.inputs[0])
+    shader = tree.nodes["Principled BSDF"]
+    tree.links.new(made[0].outputs["Green"], shader.inputs["Roughness"])
+    tree.links.new(made[-1].outputs["Blue"], shader.inputs["Metallic"])
+
+
+@pytest.mark.parametrize("sizes", [(64,), (64, 32)], ids=["one image", "two images"])
+def test_roughness_and_metallic_images_are_as_in_cycles(sizes, look, picture, said, switch_to_cycles):
+    bpy.ops.mesh.primitive_plane_add(size=3, rotation=(0.2, -0.3, 0.7))
+    mesh = bpy.context.object.data
+    mesh.materials.append(principled(Base_Color=(0.8, 0.5, 0.3, 1)))
+    add_sun(look, rotation=(-0.2, 0.5, 0))
+    plain = picture()
+    add_gloss(mesh.materials[0], sizes)
+    ours = picture()
+    assert set(counts()) == {"polygon_meshes", "triangles"} and "for its" not in said()
+    switch_to_cycles(samples=64)
+    look.cycles.max_bounces = 0
+    assert as_cycles_has_it(ours, picture(), share=0.05)
+    assert np.abs(plain - ours).max() > 0.1
+
+
+def test_images_at_two_places_are_named(look, picture, said):
+    bpy.ops.mesh.primitive_plane_add(size=3)
+    bpy.context.object.data.materials.append(principled())
+    add_gloss(bpy.context.object.data.materials[0], (8, 8), turned=True)
+    picture()
+    assert "has an image or nodes for its metallic and roughness" in said()
+
+
 def test_a_normal_map_that_polygons_do_not_show_is_named(look, picture, said):
     bpy.ops.mesh.primitive_cube_add()
     bpy.context.object.data.materials.append(principled())
@@ -412,7 +460,7 @@ def test_a_normal_map_that_polygons_do_not_show_is_named(look, picture, said):
 
 @pytest.mark.parametrize("channel", ["Emission Color", "Roughness", "Base Color"])
 def test_images_that_polygons_show_at_corners_alone_are_named(channel, look, picture, said):
-    """The colour's image is looked up pixel by pixel, and those of other channels are not."""
+    """The images of colour and roughness are looked up pixel by pixel, and that of the emission is not."""
     bpy.ops.mesh.primitive_cube_add()
     material = principled(Emission_Strength=1.0)
     bpy.context.object.data.materials.append(material)
@@ -421,7 +469,7 @@ def test_images_that_polygons_show_at_corners_alone_are_named(channel, look, pic
     node.image = bpy.data.images.new("spots", 4, 4)
     material.node_tree.links.new(node.outputs["Color"], material.node_tree.nodes["Principled BSDF"].inputs[channel])
     picture()
-    name = {"Emission Color": "emission", "Roughness": "roughness"}.get(channel)
+    name = {"Emission Color": "emission"}.get(channel)
     told = said()
     assert (f"Cube has an image or nodes for its {name}, of which polygons show only" in told) == (name is not None)
     assert ("at their corners" in told) == (name is not None)

@@ -67,15 +67,15 @@ def _computed(graph: Graph, images: list[Image], alpha: Image | None) -> Image:
     if largest.interpolation == "Linear":
         finer = max(1, min(_MOST_FINER, _SMALL // max(height, width)))
         height, width = finer * height, finer * width
-    rows = np.concatenate([_at_pixels(image, width, height) for image in images])
+    rows = np.concatenate([at_pixels(image, width, height) for image in images])
     pixels = np.ones((4, height * width), np.float32)
     pixels[:3] = evaluate(graph, Inputs(height * width, colors=rows))
     if alpha is not None:
-        pixels[3] = _at_pixels(alpha, width, height)[3]
+        pixels[3] = at_pixels(alpha, width, height)[3]
     return replace(images[0], pixels=np.ascontiguousarray(pixels.T).reshape(height, width, 4))
 
 
-def _at_pixels(image: Image, width: int, height: int) -> np.ndarray:
+def at_pixels(image: Image, width: int, height: int) -> np.ndarray:
     """(4, w h) an image at the pixels of a larger one."""
     if image.pixels.shape[:2] == (height, width):
         return image.pixels.reshape(-1, 4).T
