@@ -1,16 +1,6 @@
 // References: Cook, Halstead, Planck, Ryu, "Stochastic Simplification of Aggregate Detail", 2007; lib/own_threshold.glsl.
 // Summary: surfels of surfaces with holes are drawn whole or not at all, as often as they are opaque.
 
-#part splat, in_picture
-float picture_turned() {
-  return frame.cut_turned;
-}
-
-#part splat, shadow
-float picture_turned() {
-  return 0.0;
-}
-
 #part splat
 #include "lib/own_threshold.glsl"
 
@@ -20,6 +10,6 @@ void splat_holes_resize(inout Splat splat, int index) {
   float overlaps = is_merged ? MERGED_OVERLAPS * splat.shortened * splat.shortened : OVERLAPS;
   float drawn = 1.0 - pow(1.0 - splat.opacity, 1.0 / overlaps);
   float surface = surface_number(index, int(instance.normal_matrix[3].x));
-  splat.is_hidden = splat.is_hidden || drawn <= own_threshold(surface, ivec2(0), picture_turned());
+  splat.is_hidden = splat.is_hidden || drawn <= own_threshold(surface, ivec2(0), frame.cut_turned);
   splat.opacity = 1.0;
 }

@@ -373,7 +373,18 @@ def glassy(scene, camera):
 
 
 #: tests/rendering/test_sun_apart.py, test_sides.py, test_terminators.py and test_styles.py have facts about them.
+def with_holes(scene, camera):
+    """The scene in front of which surfels let through what their number says, as leaves do."""
+    (ball,) = scene.surfels
+    colors = ball.surfels.colors.copy()
+    colors[:, 3] = np.arange(len(colors)) % 5 / 4
+    materials = [replace(material, cuts_holes=True) for material in ball.materials]
+    leaves = replace(ball, shape=replace(ball.surfels, colors=colors), materials=tuple(materials))
+    return replace(shadowed(scene, camera)[0], surfels=(leaves,)), camera
+
+
 SPECIAL = {
+    "leaves": lambda: with_holes(*scenes.polygons(count=COUNT, size=SIZE)),
     "sun_apart": lambda: with_its_sun_apart(*scenes.torus(count=COUNT, size=SIZE)),
     "styles": lambda: with_styles(*scenes.polygons(count=COUNT, size=SIZE)),
     "nothing": lambda: of_nothing(*scenes.torus(count=100, size=SIZE)),
@@ -414,6 +425,7 @@ CASES = [
     ("polygons", "quad", {"ambient_occlusion": 1.0}),
     ("torus", "quad", {"shading": "flat", "eye_dome": EyeDome()}),
     ("mirrored", "quad", {"reflections": True}),
+    *(("leaves", method, {"samples": 2}) for method in ("quad", "mip")),
     *(("glass", method, {"refraction": True, "reflections": True}) for method in ("quad", "mip")),
     ("mirrored", "quad", {"bounces": 1}),
     *(("polygon_shadows", method, {"lights_splats": True}) for method in ("quad", "mip")),

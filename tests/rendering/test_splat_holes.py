@@ -84,6 +84,7 @@ def test_only_other_transparent_surfels_need_layers():
     mixed = replace(glass, materials=(Material(), LEAF))
     assert "splat_holes" in str(plan(Scene([leaf]), view(8), SETTINGS))
     assert not any(loop.name == "layers" for loop in plan(Scene([leaf]), view(8), SETTINGS).steps)
+    assert "splat_holes" not in str(plan(Scene([sheet(1.0)]), view(8), SETTINGS))
     for other in (glass, mixed):
         made = plan(Scene([other]), view(8), SETTINGS)
         assert any(loop.name == "layers" for loop in made.steps) and "SPLAT_HOLES" not in str(made)

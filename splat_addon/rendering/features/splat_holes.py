@@ -35,4 +35,4 @@ CONSTANTS = {"OVERLAPS": math.pi * SAMPLE_SIZE**2, "MERGED_OVERLAPS": math.pi * 
 
 def parts(planning, p):
     if p.host in DRAWING_HOSTS and p.kind not in (Kind.LAYER, Kind.REST):
-        yield Part("splat_holes", () if p.kind == Kind.SHADOW else ("in_picture",), only="with_holes")
+        yield Part("splat_holes", only="with_holes")
