@@ -7,6 +7,7 @@ import pytest
 
 from splat_addon.blender.export.scene import Notes
 from splat_addon.blender.export.shading import shading_material
+from splat_addon.blender.materials.graphs.channels import mix_factor
 from splat_addon.blender.materials.material_surfaces import MeshLayers, material_surface
 from splat_addon.blender.materials.surface_shaders import parts, surface_shader
 
@@ -206,7 +207,7 @@ def test_a_shader_that_is_mixed_in_many_ways_is_one_part_with_all_its_shares(mad
     for _ in range(10):
         first, second = (made.mix("ShaderNodeMixShader", first, second, factor) for factor in (0.25, 0.5))
     made.show(first)
-    found = list(parts(surface_shader(made.material)))
+    found = list(parts(surface_shader(made.material), mix_factor))
     assert [part.shader.node for part in found] == ends
     assert np.isclose(sum(part.share for part in found), 1) and all(part.is_sure for part in found)
     shares = np.linalg.matrix_power([[0.75, 0.25], [0.5, 0.5]], 10)[0]

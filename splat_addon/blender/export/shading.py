@@ -14,7 +14,7 @@ from ...rendering import Finish, Light, Material
 from ...rendering.scene.material import reflectance
 from ..geometry.node_groups import nodes_in
 from ..materials.graphs.cartoons import cartoon_of
-from ..materials.graphs.channels import constant_of
+from ..materials.graphs.channels import constant_of, mix_factor
 from ..materials.mean_surfaces import mean_of
 from ..materials.node_trees import uses_nodes
 from ..materials.socket_ranges import is_radiance
@@ -142,7 +142,7 @@ def _plain_material(material: bpy.types.Material | None, notes, own: Collection[
         if shader is None or not shader.is_clear:
             notes.add(f"The material {material.name!r} {why}")
         return Material(index=material.pass_index)
-    mixed = list(parts(shader)) if shader else []
+    mixed = list(parts(shader, mix_factor)) if shader else []
     if any(part.shader.node.type == "HOLDOUT" for part in mixed):
         notes.add(f"The material {material.name!r} mixes a Holdout, through which this engine shows what lies behind")
     mixed = [part for part in mixed if part.shader.node.type not in CLEAR]

@@ -54,7 +54,7 @@ def backgrounds(world: bpy.types.World, notes) -> tuple[Backgrounds, Backgrounds
 
 
 def _share(rays: Backgrounds, mix: Shader, owner: str, notes) -> tuple[float, bool]:
-    """The factor of a Mix Shader, in the form of `mix_factor`. owner: the subject of a sentence."""
+    """The factor of a Mix Shader, as `parts` takes it. owner: the subject of a sentence."""
     source = linked(outer(mix.node.inputs[0], mix.groups)[0])
     if source is not None and source[0].type == "LIGHT_PATH" and source[1] not in (_LIGHT, _CAMERA):
         notes.add(f"{owner} asks for {source[1]}; everything is lit by what diffuse rays meet")

@@ -212,7 +212,7 @@ class _Reader:
         """The colour, with the alpha if it comes from the same image, and the remaining part of the alpha."""
         if "color" not in self._sockets:
             return Channel((0.0, 0.0, 0.0, 1.0)), None
-        own = [s for s in alpha.sources if isinstance(s, ImageSource) and s.weights == ALPHA and not s.functions]
+        own = [s for s in alpha.sources if isinstance(s, ImageSource) and s.weights == ALPHA]
         try:
             read = self._product("color")
             images = [s.node for s in read.sources if isinstance(s, ImageSource) and s.weights is None]
@@ -238,7 +238,7 @@ class _Reader:
     def _made(self, name: str, read: Product) -> Channel:
         """The channel of a product; of a graph if an image or a layer cannot be read."""
         try:
-            factors = tuple(self._factor(source, _is_alpha(source) and source.is_number) for source in read.sources)
+            factors = tuple(self._factor(source, _is_alpha(source)) for source in read.sources)
         except UnreadableError:
             return self._sent(name, self._computed(name, self._mix if name == "opacity" else None))
         value = read.value * (3 // len(read.value)) if name == "emission" else read.value
@@ -278,8 +278,6 @@ class _Reader:
     def _factor(self, source: ImageSource | AttributeSource, uses_alpha: bool) -> Texture | VertexColors:
         if isinstance(source, AttributeSource):
             return VertexColors(self._layers.color(source.name), source.weights, uses_alpha=False)
-        if source.functions:
-            raise UnreadableError("nodes over an image, which are a graph")
         image = self._layers.image(source, uses_alpha or _is_alpha(source))
         name, matrix, wraps = placement(source.node, self._layers.mesh)
         return Texture(image, self._layers.uv(name), matrix, source.weights, uses_alpha, wraps)

@@ -11,10 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...sampling import Channel, Surface
-from .node_products import Product
+from .graphs.channels import constant_of, mix_factor
 from .socket_ranges import is_radiance
 from .surface_shaders import CLEAR, SHADERS, Part, Shader, parts
-from .texture_images import UnreadableError
 
 #: Opacity below which a colour is invisible.
 LEAST_OPACITY = 1e-4
@@ -33,7 +32,7 @@ class Mean:
 
 def mean_of(shader: Shader) -> Mean:
     """What a tree of shaders looks like."""
-    mixed = list(parts(shader))
+    mixed = list(parts(shader, mix_factor))
     if len(mixed) == 1 and mixed[0].is_sure and mixed[0].share == 1 and mixed[0].shader.node.bl_idname in SHADERS:
         only = mixed[0].shader
     else:
@@ -64,15 +63,10 @@ def _value(part: Part, channel: str, default: float, unsure: set[str]) -> np.nda
     names = SHADERS.get(node.bl_idname, {}).get(channel, ())
     if not names and channel == "color":
         names = [name for name in ("Color", "Base Color") if name in node.inputs][:1]
-    read = Product((default,) if not names else (1.0,))
+    read = np.full(3, 1.0 if names else default)
     for name in names:
-        try:
-            factor = part.shader.product(name)
-            is_plain = not factor.sources
-        except UnreadableError:
-            is_plain = False
-        if not is_plain:
+        number = constant_of(part.shader, name) if part.shader.socket(name).is_linked else None
+        if number is None and part.shader.socket(name).is_linked:
             unsure.add(channel)
-            factor = part.shader.plain(name)
-        read = read * factor
-    return np.broadcast_to(np.array(read.value, np.float64), 3)
+        read = read * (part.shader.plain(name).value if number is None else number)
+    return read

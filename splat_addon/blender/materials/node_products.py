@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reads a socket of a shader's node tree as a product of constants, image textures and attributes.
 
-Importers and painters make such products. A node over one image that `function_nodes` knows is read too: it is applied
-to the image's pixels. Anything else raises `UnreadableError`, whose text ends the sentence "it comes from ...".
+Importers and painters make such products. Anything else raises `UnreadableError`, whose text ends the sentence "it
+comes from ...", and is read as a graph.
 """
 
 from __future__ import annotations
@@ -16,7 +16,6 @@ import numpy as np
 
 from ...sampling.materials.surfaces import ALPHA, BLUE, GREEN, RED
 from ..working_space import luminance
-from . import function_nodes
 from .node_trees import called
 from .node_walks import Node, Socket, Walk, input_of, linked
 from .texture_images import UnreadableError
@@ -24,29 +23,10 @@ from .texture_images import UnreadableError
 
 @dataclass(frozen=True)
 class ImageSource:
-    """An Image Texture node.
-
-    weights: for its r, g, b, a, to make one number; None: the colour.
-    functions: applied to pixels, one after another, on the colour or that number.
-    makes_color: whether they make a colour of that number.
-    """
+    """An Image Texture node. weights: for its r, g, b, a, to make one number; None: the colour."""
 
     node: bpy.types.ShaderNodeTexImage
     weights: tuple[float, ...] | None = None
-    functions: tuple[Callable[[np.ndarray], np.ndarray], ...] = ()
-    makes_color: bool = False
-
-    @property
-    def is_number(self) -> bool:
-        """Whether it ends as one number."""
-        return self.weights is not None and not self.makes_color
-
-    def weighted(self, weights: tuple[float, ...]) -> ImageSource:
-        """One number of its colour."""
-        if not self.makes_color:
-            return replace(self, weights=weights)
-        number = np.float32(weights[:3])[:, None]
-        return replace(self, functions=(*self.functions, lambda colors: colors @ number), makes_color=False)
 
 
 @dataclass(frozen=True)
@@ -55,15 +35,6 @@ class AttributeSource:
 
     name: str
     weights: tuple[float, ...] | None = None
-
-    @property
-    def is_number(self) -> bool:
-        """Whether it is one number."""
-        return self.weights is not None
-
-    def weighted(self, weights: tuple[float, ...]) -> AttributeSource:
-        """One number of its colour."""
-        return replace(self, weights=weights)
 
 
 @dataclass(frozen=True)
@@ -91,24 +62,9 @@ class Product:
             return Product((float(np.dot(self.value, weights[:3])),))
         kept = [k for k in range(3) if weights[k]]
         # Factors of the colour must scale its components alike, so that the sum is a product again.
-        if len(self.sources) > 1 or self.sources[0].is_number or len({self.value[k] for k in kept}) > 1:
+        if len(self.sources) > 1 or self.sources[0].weights is not None or len({self.value[k] for k in kept}) > 1:
             raise UnreadableError("one number of a product of colours")
-        return Product((self.value[kept[0]],), (self.sources[0].weighted(weights),))
-
-    def mapped(self, function: Callable[[np.ndarray], np.ndarray], name: str, count: int | None = None) -> Product:
-        """Apply a function of arrays (..., components); name: of the node that does it. count: the result's components,
-        if they are more than its own."""
-        count = count or len(self.value)
-        if not self.sources:
-            return Product(tuple(function(np.array(self.value)).tolist()))
-        if len(self.sources) > 1 or not isinstance(self.sources[0], ImageSource):
-            raise UnreadableError(f"a {name} node over anything but one image")
-        scale, source = np.float32(self.value if len(set(self.value)) > 1 else self.value[0]), self.sources[0]
-        if scale.ndim and source.is_number:
-            raise UnreadableError(f"a {name} node over a tinted number")
-        functions = (*source.functions, lambda pixels: function(pixels * scale))
-        makes_color = count == 3 and source.weights is not None
-        return Product((1.0,) * count, (replace(source, functions=functions, makes_color=makes_color),))
+        return Product((self.value[kept[0]],), (replace(self.sources[0], weights=weights),))
 
 
 def product(socket: Socket, groups: tuple[Node, ...] = ()) -> Product:
@@ -226,5 +182,4 @@ _READERS: dict[tuple[str, str], Reader] = {
     ("ShaderNodeRGBToBW", "Val"): _luminance,
     ("ShaderNodeMix", "Result_Color"): _mix,
     ("ShaderNodeMixRGB", "Color"): _mix,
-    **function_nodes.READERS,
 }

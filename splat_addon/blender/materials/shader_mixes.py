@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import bpy
 
+from .graphs.channels import mix_factor
 from .mixed_leaves import LEAVES
 from .node_walks import linked, passed_through_link, within
 from .surface_shaders import CLEAR, Shader, parts
@@ -26,7 +27,7 @@ _BLACK, _WHITE = (0.0, 0.0, 0.0), (1.0, 1.0, 1.0)
 
 def channels(shader: Shader) -> list[str]:
     """The channels of a surface to bake for a tree of shaders."""
-    ends = [part.shader.node for part in parts(shader)]
+    ends = [part.shader.node for part in parts(shader, mix_factor)]
     kinds = [end.type for end in ends]
     emits = any(end.type == "EMISSION" or _emits(end) for end in ends)
     is_clear = any(kind in CLEAR or kind == "BSDF_PRINCIPLED" for kind in kinds)

@@ -13,7 +13,6 @@ from .node_products import Product, constant, product
 from .node_trees import uses_nodes
 from .node_walks import MAX_CHAIN, has_volume, linked, outer, passed_through_link, within
 from .socket_ranges import finite_factors, has_range, in_range
-from .texture_images import UnreadableError
 
 Node = bpy.types.Node
 Socket = bpy.types.NodeSocket
@@ -163,22 +162,10 @@ class Part:
     is_sure: bool
 
 
-def mix_factor(mix: Shader) -> tuple[float, bool]:
-    """The factor of a Mix Shader, 0 to 1, and whether it is a constant; if not, its socket's value."""
-    socket = mix.node.inputs[0]
-    try:
-        read = product(socket, mix.groups)
-    except UnreadableError:
-        read = None
-    is_constant = read is not None and not read.sources
-    value = read.value[0] if is_constant else socket.default_value
-    return min(value, 1.0) if value > 0 else 0.0, is_constant
-
-
-def parts(shader: Shader, factor_of: Callable[[Shader], tuple[float, bool]] = mix_factor) -> Iterator[Part]:
+def parts(shader: Shader, factor_of: Callable[[Shader], tuple[float, bool]]) -> Iterator[Part]:
     """The shaders that a tree of shaders mixes and adds, each once, without those whose share is 0.
 
-    factor_of: as `mix_factor`, called once for each Mix Shader.
+    factor_of: of a Mix Shader, 0 to 1, and whether it is a constant; called once for each.
     """
     shares = {shader: (1.0, True)}
     for each in reversed(_fed_first(shader, set())):

@@ -142,8 +142,6 @@ class TextureStore:
             read = shader.product(sockets[0])
         except UnreadableError:
             return self._computed(shader, mix)
-        if any(isinstance(source, ImageSource) and source.functions for source in read.sources):
-            return self._computed(shader, mix)
         if (
             len(read.sources) != 1
             or not isinstance(read.sources[0], ImageSource)

@@ -13,6 +13,7 @@ import bpy
 from .node_products import Product, product
 from .node_walks import MAX_CHAIN, linked, outer
 from .surface_shaders import Shader
+from .texture_images import UnreadableError
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,9 +28,12 @@ class TransparentMix:
     def opacity(self) -> Product:
         """The shader's share. Raises UnreadableError."""
         share = product(self.mix.node.inputs[0], self.mix.groups)
-        if not share.sources:
-            share = share.mapped(_clamped, "Mix Shader")
-        return share.mapped(_rest, "Mix Shader") if self.is_first else share
+        if share.sources:
+            if self.is_first:
+                raise UnreadableError("1 minus an image or an attribute")
+            return share
+        factor = min(max(share.value[0], 0.0), 1.0)
+        return Product((1 - factor if self.is_first else factor,))
 
     def is_alpha_of(self, node: bpy.types.Node) -> bool:
         """Whether the share is the alpha of an Image Texture node."""
@@ -65,11 +69,3 @@ def _shows_an_image(socket) -> bool:
             return node is not None and node.bl_idname == "ShaderNodeTexImage"
         socket = next((own for own in node.inputs if own.is_linked), node.inputs[0])
     return False
-
-
-def _clamped(values):
-    return values.clip(0, 1)
-
-
-def _rest(values):
-    return 1 - values

@@ -25,7 +25,7 @@ from ..node_walks import Node, Socket
 from ..ramps import PLACES
 from ..surface_shaders import Shader, shader_at, surface_shader
 from ..texture_images import UnreadableError
-from .channels import ReadGraph, limited
+from .channels import ReadGraph, constant_of, limited
 from .reading import GraphReading, Value
 
 _LIGHT_TO_COLOR = "ShaderNodeShaderToRGB"
@@ -66,13 +66,13 @@ def cartoon_of(material: bpy.types.Material) -> Cartoon | None:
     reading = _Reading(layers, shader.groups)
     try:
         graph, _ = reading.graph(reading.three(reading.read_strictly(socket), True))
-        strength = 1.0 if is_color else shader.product("Strength").value[0]
     except UnreadableError:
         return None
-    if not reading.is_lit:
+    strength = (1.0,) if is_color else constant_of(shader, "Strength")
+    if not reading.is_lit or strength is None:
         return None
     light = np.concatenate([np.tile(np.linspace(0, 1, PLACES, dtype=np.float32), (3, 1)), np.ones((5, PLACES))])
-    colors = np.broadcast_to(evaluate(graph, Inputs(PLACES, colors=np.float32(light))), (3, PLACES)).T * strength
+    colors = np.broadcast_to(evaluate(graph, Inputs(PLACES, colors=np.float32(light))), (3, PLACES)).T * strength[0]
     if layers.is_asked:
         full = colors[-1]
         colors = np.where(full > 1e-6, colors / np.maximum(full, 1e-6), 0).clip(0, _BRIGHTER)

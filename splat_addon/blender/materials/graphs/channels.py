@@ -81,6 +81,14 @@ def constant_number(socket, groups: tuple[Node, ...]) -> float | None:
     return None if layers.is_asked or reading.asks_owner else constant_value(graph)[0]
 
 
+def mix_factor(mix: Shader) -> tuple[float, bool]:
+    """The factor of a Mix Shader, 0 to 1, and whether it is a constant; if not, its socket's value."""
+    socket = mix.node.inputs[0]
+    factor = constant_number(socket, mix.groups)
+    value = socket.default_value if factor is None else factor
+    return min(value, 1.0) if value > 0 else 0.0, factor is not None
+
+
 def read_color(socket, groups: tuple[Node, ...], layers: MeshLayers) -> ReadGraph:
     """A colour socket of any node. Raises UnreadableError if nothing of it can be read."""
     reading = GraphReading(layers, groups)
