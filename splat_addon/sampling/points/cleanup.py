@@ -20,9 +20,10 @@ ISOLATED_FROM_ALL_RATIO = 20.0
 #: small group far from all others. Sparse parts of a scan are flat and have no such gaps.
 SPARSE_RATIO = 6.0
 
-#: Neighbours fill space if their variance across the plane that fits them best is more than this share of the whole. It
-#: is 0 on a plane, 0.09 with noise of half the spacing, and 0.17 for random points in space.
-_THICK = 0.1
+#: Neighbours of sparse points fill space if their variance across the plane that fits them best is more than this share
+#: of the whole. It is 0 on a plane, with noise of half the typical spacing below 0.01 there, and about 0.17 for random
+#: points in space, of which one of a hundred has less than this.
+_THICK = 0.03
 
 #: A gap separates a group of at least this many points from its next neighbour, which is this many times as far as the
 #: one before. One of 4,000 random points on a surface has such a gap.
