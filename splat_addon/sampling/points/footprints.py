@@ -40,6 +40,10 @@ _FEWEST = 4
 #: Maximum ratio of an ellipse's axes, in case a point's neighbours lie on one line.
 _MAX_STRETCH = 8.0
 
+#: The surface bears a large splat if neighbours lie on all sides, without a gap of more than this, in radians, and their
+#: root mean square distance from its plane is at most this share of that from its middle.
+_WIDEST_GAP, _FLAT = 2.0, 0.25
+
 
 def tangent_ellipses(
     positions: np.ndarray,
@@ -87,6 +91,17 @@ def tangent_ellipses(
 
     in_portions(count, CHUNK, job, report)
     return axes, half_axes, known
+
+
+def are_borne(positions: np.ndarray, normals: np.ndarray, neighbours: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """(n,) bool: which of some points the surface bears as large splats: not those at its edges, or in foliage."""
+    away = positions[neighbours[rows]] - positions[rows, None]
+    frame = (*tangent_frames(normals[rows]), normals[rows])
+    u, v, height = (np.einsum("nkc,nc->nk", away, axis) for axis in frame)
+    angles = np.sort(np.arctan2(v, u), axis=1)
+    gaps = np.diff(angles, axis=1, append=angles[:, :1] + 2 * np.pi)
+    is_flat = (height**2).sum(axis=1) <= _FLAT**2 * (u * u + v * v).sum(axis=1)
+    return (gaps.max(axis=1) < _WIDEST_GAP) & is_flat
 
 
 def _spacings(u: np.ndarray, v: np.ndarray, bounds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -18,7 +18,7 @@ from ..progress import Progress, stage
 from .cells import spatial_order
 from .cleanup import finite_points, first_of_each, isolated_points, off_surface
 from .creases import CREASE_NEIGHBOURS, clip_fields, find_creases
-from .footprints import tangent_ellipses
+from .footprints import are_borne, tangent_ellipses
 from .neighbours import nearest_neighbours
 from .noise import NOISY, WIDER, noise_levels, of_surroundings, smoothed_normals, spacings
 from .normals import local_planes, tangent_frames
@@ -144,7 +144,7 @@ def _estimate(given, neighbours, splat_size, isolated, viewpoint, crease_angle, 
     axes, scales = _ellipses(
         given, positions, planes, missing_radii, nearest[:, :reach], distances, alone, splat_size, creases, progress
     )
-    limited = _limit(scales, nearest, missing_radii, alone)
+    limited = _limit(scales, positions, planes, nearest, missing_radii, alone)
     colors, default_colors = _colors(given, len(positions))
     fields = {
         "rotations": axes_quaternions(axes, np.cross(planes, axes), planes),
@@ -239,18 +239,18 @@ def _ellipses(
     return axes, scales
 
 
-def _limit(scales: np.ndarray, nearest: np.ndarray, missing: np.ndarray, alone: np.ndarray) -> np.ndarray:
+def _limit(scales, positions, normals, nearest, missing, alone) -> np.ndarray:
     """Shorten (N, 2) half-axes, in place, that reach across a gap; returns (N,) bool, which ones. A splat that is much
-    larger than the others is one only if its neighbours that are no strays are large too, as in a sparse part of a
-    scan."""
+    larger than the others is one only if the surface bears it, and its neighbours that are no strays are large too, as
+    in a sparse part of a scan."""
     largest, limited = scales.max(axis=1), np.zeros(len(scales), bool)
     if alone.all() or not nearest.shape[1]:
         return limited
-    typical = np.median(largest[~alone])
-    rows = np.flatnonzero(missing & (largest > _MOST_MEDIANS * typical))
+    most = _MOST_MEDIANS * np.median(largest[~alone])
+    rows = np.flatnonzero(missing & (largest > most))
     # strays count as the smallest
     near = np.median(np.where(alone[nearest[rows]], 0, largest[nearest[rows]]), axis=1)
-    limits = np.maximum(_MOST_MEDIANS * typical, _MOST_OF_NEIGHBOURS * near)
+    limits = np.maximum(most, np.where(are_borne(positions, normals, nearest, rows), _MOST_OF_NEIGHBOURS * near, 0))
     limited[rows] = largest[rows] > limits
     scales[rows] = np.minimum(scales[rows], limits[:, None])
     return limited

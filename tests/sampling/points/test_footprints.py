@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 
 from splat_addon.sampling import surfels_from_points
-from splat_addon.sampling.points.from_points import _limit
 from splat_addon.sampling.points.normals import tangent_frames
 
 
@@ -31,18 +30,15 @@ def test_a_square_grid_gets_discs_of_the_splat_size(grid_points):
     assert np.allclose(inner, 1.5 * 0.5, rtol=0.05)
 
 
-def test_a_large_splat_needs_large_neighbours_that_are_no_strays():
-    """Point 0 is beside a gap, points 1 to 9 are in a sparse part, 10 and 11 are beside strays, 12 to 19 are these."""
-    scales, alone = np.ones((100, 2)), np.zeros(100, bool)
-    scales[:20] = 20, 10
-    alone[12:20] = True
-    nearest = np.tile(np.arange(50, 58), (100, 1))
-    nearest[1:10], nearest[10:12] = np.arange(1, 9), np.arange(12, 20)
-    missing = np.ones(100, bool)
-    missing[11] = False  # its radius was given
-    limited = _limit(scales, nearest, missing, alone)
-    assert np.flatnonzero(limited[:12]).tolist() == [0, 10] and not limited[20:].any()
-    assert scales[[0, 1, 10, 11, 99]].tolist() == [[5, 5], [20, 10], [5, 5], [20, 10], [1, 1]]
+def test_only_a_surface_all_around_bears_large_splats(grid_points):
+    """A grid of eight times the spacing keeps large splats, except at its edges, and where it is rough."""
+    coarse = 8 * grid_points(16, 16) + (60, 0, 0)
+    rough = coarse + (200, 0, 0) + np.random.default_rng(0).normal(0, (0, 0, 4), coarse.shape)
+    surfels, report = surfels_from_points(np.concatenate([grid_points(50, 50), coarse, rough]), isolated="keep")
+    sizes = surfels.radius[2500:].reshape(2, 16, 16) / np.median(surfels.radius)
+    assert (sizes[0, 4:-4, 4:-4] > 7).all()
+    assert sizes[0, 0].max() < 5.01 and sizes[1].max() < 5.01
+    assert report.limited > 256
 
 
 @pytest.mark.parametrize("stretch", [2.0, 4.0])
