@@ -74,6 +74,22 @@ class PointsProperties:
         min=math.radians(1),
         max=math.pi,
     )
+    flattens_noise: BoolProperty(
+        name="Flatten Noise",
+        description=(
+            "Move points of noisy surfaces onto the planes through their neighbours, which smooths the surface. "
+            "Points of clean scans stay where they are"
+        ),
+        default=False,
+    )
+    thins_overlaps: BoolProperty(
+        name="Thin Overlaps",
+        description=(
+            "Leave out points of a scan where another one, from less than half as far away, saw the same place more "
+            "densely. Only files that say where their scanners stood have such scans"
+        ),
+        default=True,
+    )
     flatness: FloatProperty(
         name="Flatness",
         description=(
@@ -105,7 +121,13 @@ class PointsConversionProperties(PointsProperties):
 POINTS_NAMES = (*PointsProperties.__annotations__, *PointsConversionProperties.__annotations__)
 
 #: Arguments of `surfels_from_points` that are properties of the same name; the angle is one only if creases are sought.
-_KEYWORDS = {"neighbours": int, "splat_size": float, "isolated": str.lower}
+_KEYWORDS = {
+    "neighbours": int,
+    "splat_size": float,
+    "isolated": str.lower,
+    "flattens_noise": bool,
+    "thins_overlaps": bool,
+}
 
 
 def keywords(properties: PointsProperties) -> dict:
@@ -135,13 +157,14 @@ def draw_points_properties(layout: bpy.types.UILayout, properties: PointsPropert
     layout.use_property_split = True
     layout.use_property_decorate = False
     draw_estimates(layout, properties)
+    layout.prop(properties, "thins_overlaps")
     draw_points_edges(layout, properties)
     layout.prop(properties, "splat_size")
 
 
 def draw_estimates(layout: bpy.types.UILayout, properties: PointsProperties) -> None:
     """Draw what decides whether the surfels of a scan are right."""
-    for name in ("facing", "neighbours", "isolated"):
+    for name in ("facing", "neighbours", "isolated", "flattens_noise"):
         layout.prop(properties, name)
 
 

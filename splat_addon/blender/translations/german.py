@@ -724,6 +724,22 @@ GERMAN = {
     "Shape": "Form",
     "Nothing": "Nichts",
     "Find Creases": "Falten finden",
+    "Flatten Noise": "Rauschen glätten",
+    (
+        "Move points of noisy surfaces onto the planes through their neighbours, which smooths the surface. "
+        "Points of clean scans stay where they are"
+    ): (
+        "Punkte verrauschter Oberflächen auf die Ebenen durch ihre Nachbarn verschieben, was die Oberfläche glättet. "
+        "Punkte sauberer Scans bleiben, wo sie sind"
+    ),
+    "Thin Overlaps": "Überlappungen ausdünnen",
+    (
+        "Leave out points of a scan where another one, from less than half as far away, saw the same place more "
+        "densely. Only files that say where their scanners stood have such scans"
+    ): (
+        "Punkte eines Scans weglassen, wo ein anderer aus weniger als halber Entfernung dieselbe Stelle dichter "
+        "gesehen hat. Solche Scans haben nur Dateien, die sagen, wo ihre Scanner standen"
+    ),
     (
         "End surfels at edges where planes through neighbouring points meet, and give each side its own normal. "
         "It takes up to six times as long. Edges closer than about three distances between points are not told "

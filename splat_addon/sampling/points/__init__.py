@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Turns bare points into surfels: normals, radii and axes that a scan lacks are estimated from each point's neighbours.
 
-Flow: `cleanup` -> `neighbours` (over `cells`) -> `normals` -> `orientation` -> `creases` (over `plane_fits`, only if
-they are sought) -> `footprints` -> `Surfels`; `from_points` runs these steps, `report` counts what was skipped and
-estimated.
+Flow: `cleanup` -> `neighbours` (over `cells`) -> `estimated_normals` (over `normals`, `noise` and `orientation`) ->
+`creases` (over `plane_fits`, only if they are sought) -> `footprints` -> `Surfels`; `from_points` runs these steps,
+`report` counts what was skipped and estimated.
 """
 
 from .creases import DEFAULT_CREASE_ANGLE

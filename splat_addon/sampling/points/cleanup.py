@@ -33,6 +33,10 @@ _FEWEST_IN_GROUP, _GAP = 4, 4.0
 #: and this many spacings, which the tip of a clean scan is not.
 _OFF_NOISE, _OFF_SPACINGS = 3.3, 1.2
 
+#: Points are overlapped by those of scanners at most this share of the distance away, whose scan is four times as
+#: dense, if most of this many nearest neighbours are such points. With more, it would reach beyond the denser scan.
+_NEARER, _OVERLAPPING = 0.5, 8
+
 
 def finite_points(positions: np.ndarray) -> np.ndarray:
     """(N,) bool: whether all three coordinates are finite and of a usable magnitude; positions (N, 3)."""
@@ -80,3 +84,12 @@ def off_surface(heights: np.ndarray, noise: np.ndarray, spacing: np.ndarray, nei
     large.
     """
     return heights > np.maximum(_OFF_NOISE * noise, _OFF_SPACINGS * spacing[neighbours[:, 0]])
+
+
+def overlapped(positions: np.ndarray, scanners: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
+    """(N,) bool: points that add noise alone, because nearer scanners saw the same place more densely.
+
+    positions, scanners: (N, 3), NaN where a scanner's place is unknown. neighbours: (N, k) indices.
+    """
+    ranges = np.linalg.norm(scanners - positions, axis=1)
+    return (ranges[neighbours[:, :_OVERLAPPING]] < _NEARER * ranges[:, None]).mean(axis=1) > 0.5

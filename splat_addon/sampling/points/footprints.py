@@ -40,8 +40,8 @@ _FEWEST = 4
 #: Maximum ratio of an ellipse's axes, in case a point's neighbours lie on one line.
 _MAX_STRETCH = 8.0
 
-#: The surface bears a large splat if neighbours lie on all sides, without a gap of more than this, in radians, and their
-#: root mean square distance from its plane is at most this share of that from its middle.
+#: The surface bears a large splat if neighbours lie on all sides, without a gap of more than this, in radians, and
+#: their root mean square distance from its plane is at most this share of that from its middle.
 _WIDEST_GAP, _FLAT = 2.0, 0.25
 
 

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -16,13 +16,13 @@ from ...vectors import unit
 from ..options import DEFAULT_SPLAT_SIZE, check_crease_angle
 from ..progress import Progress, stage
 from .cells import spatial_order
-from .cleanup import finite_points, first_of_each, isolated_points, off_surface
+from .cleanup import finite_points, first_of_each, isolated_points, overlapped
 from .creases import CREASE_NEIGHBOURS, clip_fields, find_creases
+from .estimated_normals import EstimatedNormals, estimated_normals, known_normals
 from .footprints import are_borne, tangent_ellipses
 from .neighbours import nearest_neighbours
-from .noise import NOISY, WIDER, noise_levels, of_surroundings, smoothed_normals, spacings
-from .normals import local_planes, tangent_frames
-from .orientation import consistent_signs, facing_outward, facing_scanners, facing_viewpoint
+from .noise import WIDER
+from .normals import tangent_frames
 from .report import BRIGHT_COLOR, PointsReport
 
 #: Neighbours per point: enough to average out noise, few enough to follow the surface; on a grid these are a little
@@ -40,8 +40,7 @@ _MOST_MEDIANS, _MOST_OF_NEIGHBOURS = 5.0, 2.0
 #: The start and end of each step as shares of the total time.
 _STAGES = {
     "neighbours": (0.05, 0.6),
-    "normals": (0.6, 0.7),
-    "sides": (0.7, 0.8),
+    "normals": (0.6, 0.8),
     "creases": (0.8, 0.9),
     "ellipses": (0.9, 1.0),
 }
@@ -65,6 +64,8 @@ def surfels_from_points(
     viewpoint: tuple[float, float, float] | None = None,
     scanners: np.ndarray | None = None,
     crease_angle: float | None = None,
+    flattens_noise: bool = False,
+    thins_overlaps: bool = True,
     progress: Progress | None = None,
 ) -> tuple[Surfels, PointsReport]:
     """Surfels of N points in the order of the points, and a report of what was left out and what was estimated.
@@ -78,6 +79,8 @@ def surfels_from_points(
     scanners: (N, 3) where the scanner of each point stood, which estimated normals of the point face; NaN: unknown.
     crease_angle: radians; points near an edge where planes meet at more than this get the normal of their own side and
         end there (`creases`, with its limits); given normals stay. None: no creases are sought.
+    flattens_noise: move noisy points onto the planes from which their normals are estimated.
+    thins_overlaps: leave out points where scanners less than half as far away saw most of their neighbours.
     progress: called regularly with the finished share, 0 to 1; if it returns False, `SamplingCancelled` is raised.
 
     Raises ValueError with one sentence for wrong shapes or settings, or for too few usable points.
@@ -95,7 +98,7 @@ def surfels_from_points(
     report = replace(report, duplicates=len(usable) - len(kept))
     order = kept[spatial_order(given["positions"][kept])]
     given = {name: values[order] for name, values in given.items() if values is not None}
-    options = neighbours, splat_size, isolated, viewpoint, crease_angle
+    options = neighbours, splat_size, isolated, viewpoint, crease_angle, flattens_noise, thins_overlaps
     surfels, keep, report = _estimate(given, *options, report, progress)
     rank = np.argsort(order[keep], kind="stable")
     arrays = {name: array[keep][rank] for name, array in surfels.items()}
@@ -113,8 +116,10 @@ def _middle(positions: np.ndarray) -> np.ndarray:
     return np.array(middle, np.float32).astype(np.float64)
 
 
-def _estimate(given, neighbours, splat_size, isolated, viewpoint, crease_angle, report, progress):
-    """Fields of `Surfels` except the positions, indices of the points to keep, and the report."""
+def _estimate(
+    given, neighbours, splat_size, isolated, viewpoint, crease_angle, flattens_noise, thins_overlaps, report, progress
+):
+    """Fields of `Surfels` except the positions, which are moved in place; indices of the points to keep; the report."""
     positions = given["positions"]
     positions = positions - _middle(positions)
     missing_normals, missing_radii = ~_usable_normals(given), ~_usable_radii(given)
@@ -133,6 +138,12 @@ def _estimate(given, neighbours, splat_size, isolated, viewpoint, crease_angle, 
         alone = isolated_points(positions, nearest[:, :neighbours], distances[:, :neighbours])
     found = _normals(given, positions, missing_normals, nearest, distances, neighbours, viewpoint, progress)
     normals, alone = found.normals, alone | found.off
+    if flattens_noise and found.shifts is not None:
+        positions = positions + found.shifts
+        given["positions"] = given["positions"] + found.shifts
+    repeated = np.zeros(len(positions), bool)
+    if thins_overlaps and "scanners" in given and nearest.shape[1]:
+        repeated = overlapped(given["positions"], given["scanners"], nearest[:, :neighbours]) & ~alone
     planes, creases = normals, None
     if crease_angle is not None and nearest.shape[1]:
         told = stage(progress, *_STAGES["creases"])
@@ -155,10 +166,11 @@ def _estimate(given, neighbours, splat_size, isolated, viewpoint, crease_angle, 
     }
     if creases is not None:
         fields |= clip_fields(creases, axes, planes, scales)
-    keep = np.flatnonzero(~alone) if isolated == "drop" else np.arange(len(positions))
+    keep = np.flatnonzero(~repeated & (~alone if isolated == "drop" else True))
     return fields, keep, replace(
         report,
         isolated=int(alone.sum()),
+        overlapped=int(repeated.sum()),
         estimated_normals=int(missing_normals[keep].sum()),
         estimated_radii=int(missing_radii[keep].sum()),
         limited=int(limited[keep].sum()),
@@ -176,47 +188,21 @@ def _number_clipped(fields: dict[str, np.ndarray], keep: np.ndarray) -> int:
     return int(np.count_nonzero(sum(fields[name][keep, 1] > 0 for name in CLIP_FIELDS if name in fields)))
 
 
-@dataclass(eq=False)
-class _Normals:
-    """normals: (N, 3) float64 unit. parts: number of connected parts that were oriented. Which points lie off the
-    surface, are noisy, and have normals that are not to be trusted: (N,) bool."""
-
-    normals: np.ndarray
-    parts: int
-    off: np.ndarray
-    is_noisy: np.ndarray
-    is_untrusted: np.ndarray
-
-
-def _normals(given, positions, missing, nearest, distances, neighbours, viewpoint, progress) -> _Normals:
-    none = np.zeros(len(positions), bool)
+def _normals(given, positions, missing, nearest, distances, neighbours, viewpoint, progress) -> EstimatedNormals:
     if not missing.any():
-        return _Normals(_unit_of_any_length(given["normals"]), 0, none, none, none)
-    own, told = nearest[:, :neighbours], stage(progress, *_STAGES["normals"])
-    planes = local_planes(positions, own, report=lambda share: told(0.4 * share))
-    noise, spacing = noise_levels(planes.roughness(), own), spacings(distances)
-    normals, is_noisy, is_untrusted = planes.normals, noise > NOISY * spacing, none.copy()
-    rows = np.flatnonzero(is_noisy)
-    if len(rows):
-        wider = positions, normals, nearest, rows, lambda share: told(0.4 + 0.6 * share)
-        normals[rows], _, is_untrusted[rows] = smoothed_normals(*wider)
-    signs, part = consistent_signs(positions, normals, nearest, stage(progress, *_STAGES["sides"]))
-    normals *= signs[:, None]
-    if viewpoint is None:
-        normals *= facing_outward(positions, normals, part)[:, None]
-    else:
-        centre = _middle(given["positions"])
-        normals *= facing_viewpoint(positions, normals, part, np.asarray(viewpoint, np.float64) - centre)[:, None]
-    if "scanners" in given:
-        normals *= facing_scanners(positions, normals, given["scanners"] - _middle(given["positions"]))[:, None]
-    is_untrusted &= missing
-    rows = np.flatnonzero(is_untrusted)
-    normals[rows] = of_surroundings(normals, nearest, rows)
-    if not missing.all():
-        kept = np.flatnonzero(~missing)
-        normals[kept] = _unit_of_any_length(given["normals"][kept])
-    off = missing & off_surface(planes.heights(), noise, spacing, nearest)
-    return _Normals(normals, int(part.max()) + 1, off, is_noisy & missing, is_untrusted)
+        return known_normals(_unit_of_any_length(given["normals"]))
+    centre, scanners = _middle(given["positions"]), given.get("scanners")
+    found = estimated_normals(
+        positions,
+        nearest,
+        distances,
+        neighbours,
+        viewpoint=None if viewpoint is None else np.asarray(viewpoint, np.float64) - centre,
+        scanners=None if scanners is None else scanners - centre,
+        told=stage(progress, *_STAGES["normals"]),
+    )
+    kept = np.flatnonzero(~missing)
+    return found.with_known(kept, _unit_of_any_length(given["normals"][kept])) if len(kept) else found
 
 
 def _ellipses(

@@ -15,6 +15,7 @@ BRIGHT_COLOR = 10.0
 class PointsReport:
     """points: number given. surfels: number made.
     non_finite, duplicates: left out.
+    overlapped: left out, because nearer scanners saw the same place.
     isolated: found, and left out unless `kept_isolated`.
     estimated_normals, estimated_radii, default_colors: surfels whose own value was missing or unusable.
     noisy: surfels whose estimated normal is from a wider neighbourhood.
@@ -30,6 +31,7 @@ class PointsReport:
     surfels: int = 0
     non_finite: int = 0
     duplicates: int = 0
+    overlapped: int = 0
     isolated: int = 0
     kept_isolated: bool = False
     estimated_normals: int = 0
@@ -48,6 +50,7 @@ class PointsReport:
         reasons = {
             "that are not finite": self.non_finite,
             "that repeat another": self.duplicates,
+            "that nearer scanners saw more densely": self.overlapped,
             "that stand alone": 0 if self.kept_isolated else self.isolated,
         }
         return {reason: count for reason, count in reasons.items() if count}

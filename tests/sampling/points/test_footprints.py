@@ -32,8 +32,8 @@ def test_a_square_grid_gets_discs_of_the_splat_size(grid_points):
 
 def test_only_a_surface_all_around_bears_large_splats(grid_points):
     """A grid of eight times the spacing keeps large splats, except at its edges, and where it is rough."""
-    coarse = 8 * grid_points(16, 16) + (60, 0, 0)
-    rough = coarse + (200, 0, 0) + np.random.default_rng(0).normal(0, (0, 0, 4), coarse.shape)
+    coarse = 8 * grid_points(16, 16) + np.array([60.0, 0, 0])
+    rough = coarse + np.random.default_rng(0).normal((200, 0, 0), (0, 0, 4), coarse.shape)
     surfels, report = surfels_from_points(np.concatenate([grid_points(50, 50), coarse, rough]), isolated="keep")
     sizes = surfels.radius[2500:].reshape(2, 16, 16) / np.median(surfels.radius)
     assert (sizes[0, 4:-4, 4:-4] > 7).all()

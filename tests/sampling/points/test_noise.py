@@ -58,3 +58,24 @@ def test_strays_beside_a_noisy_surface_are_found():
 def test_a_valley_faces_up():
     surfels, _ = surfels_from_points(sheet(2000, 0.1, lambda x, y: 0.02 * (x * x + y * y)))
     assert (surfels.normals[:, 2] > 0).all()
+
+
+def test_flattened_points_lie_on_the_surface():
+    plain, flat = (surfels_from_points(sheet(4000, 0.5), flattens_noise=choice)[0] for choice in (False, True))
+    heights = [np.std(surfels.positions[:, 2]) for surfels in (plain, flat)]
+    assert heights[0] > 0.45 and heights[1] < 0.15
+
+
+def test_what_a_nearer_scanner_saw_more_densely_is_left_out():
+    """The far scan covers all of a sheet, the near one a corner of it, with eight times the density."""
+    random = np.random.default_rng(2)
+    far, near = 64 * random.random((2000, 3)) * (1, 1, 0), 32 * random.random((4000, 3)) * (1, 1, 0)
+    points = np.concatenate([far, near])
+    scanners = np.repeat([(32, 32, 100.0), (16, 16, 20.0)], (2000, 4000), axis=0)
+    _, report = surfels_from_points(points, scanners=scanners)
+    is_kept = np.isin(np.arange(6000), report.kept)
+    inside, outside = (far[:, :2] < 30).all(axis=1), (far[:, :2] > 36).any(axis=1)
+    assert not is_kept[:2000][inside].any() and is_kept[:2000][outside].all() and is_kept[2000:].all()
+    assert report.overlapped == np.count_nonzero(~is_kept)
+    _, report = surfels_from_points(points, scanners=scanners, thins_overlaps=False)
+    assert report.overlapped == 0

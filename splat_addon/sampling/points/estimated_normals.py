@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The normals of bare points on their sides, and what the planes through their neighbours tell besides: which points
+are noisy, lie on no surface, or lie beside one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .cleanup import off_surface
+from .noise import NOISY, noise_levels, of_surroundings, smoothed_normals, spacings
+from .normals import local_planes
+from .orientation import consistent_signs, facing_outward, facing_scanners, facing_viewpoint
+
+
+@dataclass(frozen=True, eq=False)
+class EstimatedNormals:
+    """normals: (N, 3) float64 unit. parts: number of connected parts that were oriented.
+    off: lie off the surface. is_noisy: have normals from wider neighbourhoods. is_untrusted: lie on no surface, and
+    have the direction of their surroundings: (N,) bool each.
+    shifts: (N, 3) from the points to their planes, 0 where they are not noisy; None if none is.
+    """
+
+    normals: np.ndarray
+    parts: int
+    off: np.ndarray
+    is_noisy: np.ndarray
+    is_untrusted: np.ndarray
+    shifts: np.ndarray | None = None
+
+    def with_known(self, rows: np.ndarray, normals: np.ndarray) -> EstimatedNormals:
+        """The same, but for points whose normals are known."""
+        made = {name: getattr(self, name).copy() for name in ("normals", "off", "is_noisy", "is_untrusted")}
+        made["normals"][rows] = normals
+        for name in ("off", "is_noisy", "is_untrusted"):
+            made[name][rows] = False
+        return replace(self, **made)
+
+
+def known_normals(normals: np.ndarray) -> EstimatedNormals:
+    """(N, 3) unit normals, none of which was estimated."""
+    return EstimatedNormals(normals, 0, *np.zeros((3, len(normals)), bool))
+
+
+def estimated_normals(
+    positions: np.ndarray,
+    nearest: np.ndarray,
+    distances: np.ndarray,
+    neighbours: int,
+    *,
+    viewpoint: np.ndarray | None,
+    scanners: np.ndarray | None,
+    told: Callable[[float], None],
+) -> EstimatedNormals:
+    """positions: (N, 3) float64. nearest, distances: (N, k), nearest first; neighbours: how many of them give the
+    normals of points without noise. viewpoint: (3,) that normals face, None: they face outward. scanners: (N, 3),
+    NaN where unknown, or None. told: called with the finished share.
+    """
+    own = nearest[:, :neighbours]
+    planes = local_planes(positions, own, report=lambda share: told(0.25 * share))
+    noise, spacing = noise_levels(planes.roughness(), own), spacings(distances)
+    normals, is_noisy = planes.normals, noise > NOISY * spacing
+    is_untrusted, rows, shifts = np.zeros(len(positions), bool), np.flatnonzero(is_noisy), None
+    if len(rows):
+        wider = positions, normals, nearest, rows, lambda share: told(0.25 + 0.35 * share)
+        normals[rows], middles, is_untrusted[rows] = smoothed_normals(*wider)
+        shifts = np.zeros(positions.shape)
+        shifts[rows] = normals[rows] * np.einsum("nc,nc->n", normals[rows], middles)[:, None]
+    signs, part = consistent_signs(positions, normals, nearest, lambda share: told(0.6 + 0.4 * share))
+    normals *= signs[:, None]
+    if viewpoint is None:
+        normals *= facing_outward(positions, normals, part)[:, None]
+    else:
+        normals *= facing_viewpoint(positions, normals, part, viewpoint)[:, None]
+    if scanners is not None:
+        normals *= facing_scanners(positions, normals, scanners)[:, None]
+    rows = np.flatnonzero(is_untrusted)
+    normals[rows] = of_surroundings(normals, nearest, rows)
+    off = off_surface(planes.heights(), noise, spacing, nearest)
+    return EstimatedNormals(normals, int(part.max()) + 1, off, is_noisy, is_untrusted, shifts)
