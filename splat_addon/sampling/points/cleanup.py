@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..mesh.cleaning import MAX_COORDINATE
-from .normals import local_planes
+from .normals import least_around, local_planes
 
 #: A point is isolated if its neighbours are this many times as far from it as they are from theirs. In scans of even
 #: density the ratio stays below 2; at a step to a quarter of the density it is 2.
@@ -67,7 +67,10 @@ def isolated_points(positions: np.ndarray, neighbours: np.ndarray, distances: np
     """
     mean = distances.mean(axis=1, dtype=np.float64)
     typical = np.median(mean)
-    isolated = mean > ISOLATED_RATIO * np.median(mean[neighbours], axis=1)
+    isolated = np.zeros(len(mean), bool)
+    # the median is dear, and never below the least
+    far = np.flatnonzero(mean > ISOLATED_RATIO * least_around(mean, neighbours))
+    isolated[far] = mean[far] > ISOLATED_RATIO * np.median(mean[neighbours[far]], axis=1)
     isolated |= mean > ISOLATED_FROM_ALL_RATIO * typical
     sparse = np.flatnonzero((mean > SPARSE_RATIO * typical) & ~isolated)
     own = distances[sparse]

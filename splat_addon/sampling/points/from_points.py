@@ -129,13 +129,7 @@ def _estimate(
             f"{len(positions)} usable points are too few to estimate normals and radii from, "
             f"which takes {_FEWEST_NEIGHBOURS + 1}; give them normals and radii."
         )
-    alone = np.zeros(len(positions), bool)
-    nearest, distances = np.empty((len(positions), 0), np.int32), np.empty((len(positions), 0), np.float32)
-    if len(positions) > _FEWEST_NEIGHBOURS:
-        wanted = max(math.ceil(WIDER * neighbours), 0 if crease_angle is None else CREASE_NEIGHBOURS)
-        told = stage(progress, *_STAGES["neighbours"])
-        nearest, distances = nearest_neighbours(positions, min(wanted, len(positions) - 1), told)
-        alone = isolated_points(positions, nearest[:, :neighbours], distances[:, :neighbours])
+    nearest, distances, alone = _neighbours(positions, neighbours, crease_angle, progress)
     found = _normals(given, positions, missing_normals, nearest, distances, neighbours, viewpoint, progress)
     normals, alone = found.normals, alone | found.off
     if flattens_noise and found.shifts is not None:
@@ -181,6 +175,18 @@ def _estimate(
         untrusted=int(found.is_untrusted[keep].sum()),
         creases=_number_clipped(fields, keep),
     )  # fmt: skip
+
+
+def _neighbours(positions, neighbours, crease_angle, progress) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(N, k) indices and distances of neighbours, none where there are too few points, and (N,) bool, which points are
+    isolated."""
+    if len(positions) <= _FEWEST_NEIGHBOURS:
+        none = (len(positions), 0)
+        return np.empty(none, np.int32), np.empty(none, np.float32), np.zeros(len(positions), bool)
+    wanted = max(math.ceil(WIDER * neighbours), 0 if crease_angle is None else CREASE_NEIGHBOURS)
+    told = stage(progress, *_STAGES["neighbours"])
+    nearest, distances = nearest_neighbours(positions, min(wanted, len(positions) - 1), told)
+    return nearest, distances, isolated_points(positions, nearest[:, :neighbours], distances[:, :neighbours])
 
 
 def _number_clipped(fields: dict[str, np.ndarray], keep: np.ndarray) -> int:

@@ -15,7 +15,7 @@ import numpy as np
 
 from ...vectors import unit
 from ...workers import in_portions
-from .normals import CHUNK, PAIRS, least_planes, local_planes
+from .normals import CHUNK, covariances, least_around, least_planes, local_planes
 
 #: Neighbours of noisy points, as a multiple of those of others.
 WIDER = 1.5
@@ -48,17 +48,6 @@ def noise_levels(roughness: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
     return _MEAN_OVER_LEAST * least_around(roughness, neighbours[:, :_AROUND])
 
 
-def least_around(values: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
-    """(N,) the least value of each point and its neighbours."""
-    least = values.copy()
-
-    def job(part: slice):
-        np.minimum(values[part], values[neighbours[part]].min(axis=1), out=least[part])
-
-    in_portions(len(values), CHUNK, job)
-    return least
-
-
 def smoothed_normals(
     positions: np.ndarray,
     normals: np.ndarray,
@@ -85,12 +74,11 @@ def smoothed_normals(
 
     def widened(part: slice):
         own = rows[part]
-        near = np.concatenate([neighbours[own], own[:, None]], axis=1)
-        at = place[near]
-        mean, moments = _joined_moments(middles, planes.moments, at)
+        near = np.concatenate([neighbours[own].T, own[None]])
+        mean, moments = _joined_moments(middles, planes.moments, place[near])
         made[part], _ = least_planes(moments)
-        heights[part] = (mean - positions[own].T).T
-        is_thick[part] = thick[near].min(axis=1) > _THICK
+        heights[part] = mean.T - positions[own]
+        is_thick[part] = thick[near].min(axis=0) > _THICK
 
     in_portions(len(rows), CHUNK // 4, widened, lambda share: report(0.4 + 0.4 * share))
     wide = normals.copy()
@@ -99,10 +87,11 @@ def smoothed_normals(
 
     def averaged(part: slice):
         own = rows[part]
-        near = [column[neighbours[own]] for column in columns]
-        cosine = sum(n * column[own, None] for n, column in zip(near, columns, strict=True))
+        at = np.ascontiguousarray(neighbours[own].T)
+        near = [column[at] for column in columns]
+        cosine = sum(n * column[own] for n, column in zip(near, columns, strict=True))
         weight = np.sign(cosine) * np.exp((np.abs(cosine) - 1) / np.float32(_ALIKE**2))
-        made[part] = unit(wide[own] + np.stack([(weight * n).sum(axis=1) for n in near], axis=1))
+        made[part] = unit(wide[own] + np.stack([np.einsum("kn,kn->n", weight, n) for n in near], axis=1))
 
     in_portions(len(rows), CHUNK, averaged, lambda share: report(0.8 + 0.2 * share))
     return made, heights, is_thick
@@ -110,13 +99,10 @@ def smoothed_normals(
 
 def _joined_moments(middles: np.ndarray, moments: np.ndarray, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(3, n) mean and (6, n) covariances of neighbourhoods taken together. middles: (3, M), moments: (6, M) of each;
-    at: (n, m) which of them, the last one's middle near the others'."""
-    members, centre = at.shape[1], middles[:, at[:, -1]]
-    away = [column[at] - c[:, None] for column, c in zip(middles, centre, strict=True)]
-    mean = np.stack([a.sum(axis=1) for a in away]) / members
-    between = np.stack([np.einsum("nk,nk->n", away[i], away[j]) / members - mean[i] * mean[j] for i, j in PAIRS])
-    within = np.stack([row[at].sum(axis=1) for row in moments]) / members
-    return centre + mean, between + within
+    at: (m, n) which of them, the last one's middle near the others'."""
+    centre = middles[:, at[-1]]
+    mean, between = covariances([column[at] - c for column, c in zip(middles, centre, strict=True)])
+    return centre + mean, between + np.stack([row[at].sum(axis=0) for row in moments]) / len(at)
 
 
 def of_surroundings(normals: np.ndarray, neighbours: np.ndarray, rows: np.ndarray) -> np.ndarray:

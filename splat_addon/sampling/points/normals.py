@@ -77,6 +77,17 @@ def local_planes(
     return LocalPlanes(normals, middles, moments, variances, neighbours.shape[1] + 1)
 
 
+def least_around(values: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
+    """(N,) the least value of each point and its neighbours."""
+    least = values.copy()
+
+    def job(part: slice):
+        np.minimum(values[part], values[neighbours[part]].min(axis=1), out=least[part])
+
+    in_portions(len(values), CHUNK, job)
+    return least
+
+
 def least_planes(moments: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(n, 3) unit normals of the planes that fit (6, n) covariances best, and (n,) the variances across them."""
     whole = moments[:3].sum(axis=0)
@@ -87,11 +98,18 @@ def least_planes(moments: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _moments(columns: np.ndarray, neighbours: np.ndarray, part: slice | np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(3, n) means and (6, n) covariances xx, yy, zz, yz, xz, xy of each point with its neighbours, relative to it."""
-    away = [column[neighbours] - column[part, None] for column in columns]
-    members = neighbours.shape[1] + 1
-    means = np.stack([a.sum(axis=1) for a in away]) / members
-    moments = [np.einsum("nk,nk->n", away[i], away[j]) / members - means[i] * means[j] for i, j in PAIRS]
+    """(3, n) means and (6, n) covariances of each point with its neighbours, relative to it."""
+    at = np.ascontiguousarray(neighbours.T)
+    away = [column[at] - column[part] for column in columns]
+    return covariances(away, at_middle=1)
+
+
+def covariances(away: list[np.ndarray], at_middle: int = 0) -> tuple[np.ndarray, np.ndarray]:
+    """(3, n) means and (6, n) covariances xx, yy, zz, yz, xz, xy of points. away: x, y and z, (m, n) each, of m points
+    in n groups; at_middle: number of further ones at 0."""
+    members = len(away[0]) + at_middle
+    means = np.stack([a.sum(axis=0) for a in away]) / members
+    moments = [np.einsum("kn,kn->n", away[i], away[j]) / members - means[i] * means[j] for i, j in PAIRS]
     return means, np.stack(moments)
 
 
