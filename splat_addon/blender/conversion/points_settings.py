@@ -157,14 +157,15 @@ def draw_points_properties(layout: bpy.types.UILayout, properties: PointsPropert
     layout.use_property_split = True
     layout.use_property_decorate = False
     draw_estimates(layout, properties)
-    layout.prop(properties, "thins_overlaps")
+    for name in ("flattens_noise", "thins_overlaps"):
+        layout.prop(properties, name)
     draw_points_edges(layout, properties)
     layout.prop(properties, "splat_size")
 
 
 def draw_estimates(layout: bpy.types.UILayout, properties: PointsProperties) -> None:
     """Draw what decides whether the surfels of a scan are right."""
-    for name in ("facing", "neighbours", "isolated", "flattens_noise"):
+    for name in ("facing", "neighbours", "isolated"):
         layout.prop(properties, name)
 
 

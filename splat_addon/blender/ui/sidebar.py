@@ -164,6 +164,7 @@ def _draw_advanced(layout: bpy.types.UILayout, what: Chosen, settings) -> None:
 
 
 def _draw_advanced_of_points(layout: bpy.types.UILayout, what: Chosen, settings) -> None:
+    layout.prop(settings, "flattens_noise")
     layout.prop(settings, "splat_size")
     draw_gaussian_properties(layout, settings)
     if what.kind is not SURFELS:

@@ -164,6 +164,7 @@ class Settings(PointsProperties):
     """The settings of an import as they are by default."""
 
     facing, neighbours, splat_size, isolated, finds_creases, flatness = "OUTWARD", 16, 1.25, "KEEP", False, 0.25
+    flattens_noise, thins_overlaps = False, True
 
 
 @pytest.mark.parametrize(("stage", "error"), [("Reading 400 points", ReadingCancelled), ("0%", SamplingCancelled)])

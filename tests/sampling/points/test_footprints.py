@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from splat_addon.sampling import surfels_from_points
+from splat_addon.sampling.points.from_points import _limit
 from splat_addon.sampling.points.normals import tangent_frames
 
 
@@ -39,6 +40,19 @@ def test_only_a_surface_all_around_bears_large_splats(grid_points):
     assert (sizes[0, 4:-4, 4:-4] > 7).all()
     assert sizes[0, 0].max() < 5.01 and sizes[1].max() < 5.01
     assert report.limited > 256
+
+
+def test_a_large_splat_needs_large_neighbours_that_are_no_strays():
+    """The outer points of a grid are strays, so that the middle one, whose neighbours are large, alone is borne."""
+    x, y = np.meshgrid(np.arange(3), np.arange(3))
+    places = np.stack([x, y, 0 * x], axis=-1).reshape(-1, 3).astype(float)
+    positions = np.tile(places, (6, 1))
+    positions[:, 0] += np.repeat(100.0 * np.arange(6), 9)
+    nearest = np.concatenate([np.delete(np.arange(9), k)[None] + 9 * part for part in range(6) for k in range(9)])
+    scales, alone = np.ones((54, 2)), np.zeros(54, bool)
+    scales[:18], alone[9:13], alone[14:18] = 20, True, True
+    limited = _limit(scales, positions, np.tile((0.0, 0, 1), (54, 1)), nearest, np.ones(54, bool), alone)
+    assert (scales[4] == 20).all() and (scales[13] == 5).all() and limited[13] and not limited[4]
 
 
 @pytest.mark.parametrize("stretch", [2.0, 4.0])
