@@ -38,12 +38,14 @@ int bounced_row(ivec3 cell) {
   return -1;
 }
 
-vec4 bounced_at(vec3 place, vec3 normal, out float weight) {
+// What the cells around a place know of its sides, or of any sides. weight: negative where there are no cells.
+vec4 bounced_at(vec3 place, vec3 normal, bool any_side, out float weight) {
   vec3 at = place - 0.5, low = floor(at), share = at - low;
   ivec3 sides = ivec3(0, 2, 4) + ivec3(lessThan(normal, vec3(0.0)));
   vec3 facing = max(normal * normal, vec3(BOUNCED_LEAST));
   vec4 total = vec4(0.0);
-  weight = 0.0;
+  float sum = 0.0;
+  weight = -1.0;
   for (int k = 0; k < 8; k++) {
     ivec3 corner = ivec3(k & 1, k >> 1 & 1, k >> 2);
     vec3 near = mix(1.0 - share, share, vec3(corner));
@@ -51,21 +53,25 @@ vec4 bounced_at(vec3 place, vec3 normal, out float weight) {
     if (!(own > 0.0)) continue;
     int row = bounced_row(ivec3(low) + corner);
     if (row < 0) continue;
+    weight = 0.0;
     int first = int(frame.bounced_slots) + 6 * row;
-    for (int axis = 0; axis < 3; axis++) {
-      vec4 side = bounced_texel(first + sides[axis]);
+    for (int i = 0; i < (any_side ? 6 : 3); i++) {
+      vec4 side = bounced_texel(first + (any_side ? i : sides[i]));
       if (side.a < 0.0) continue;
-      total += own * facing[axis] * side;
-      weight += own * facing[axis];
+      float counts = any_side ? own : own * facing[i];
+      total += counts * side;
+      sum += counts;
     }
   }
-  return total / max(weight, 1e-9);
+  weight = max(weight, sum);
+  return total / max(sum, 1e-9);
 }
 
 void bounced_light_prepare(inout Shaded s) {
   vec3 place = (frame.to_cells * vec4(eye_position(s.texel, s.mean.depth), 1.0)).xyz;
   float weight;
-  bounced_here = bounced_at(place, normalize(mat3(frame.to_cells) * s.normal), weight);
-  is_bounced = weight > 0.0;
+  bounced_here = bounced_at(place, normalize(mat3(frame.to_cells) * s.normal), false, weight);
+  if (weight == 0.0) bounced_here = bounced_at(place, s.normal, true, weight);  // it is between things that touch
+  is_bounced = weight >= 0.0;
   bounced_world = sent_irradiance(s.normal);
 }

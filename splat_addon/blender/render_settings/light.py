@@ -55,7 +55,7 @@ class LightProperties:
         min=1,
         max=MAX_BOUNCES,
         soft_max=4,
-        default=3,
+        default=4,
     )
     use_reflections: BoolProperty(
         name="Reflections",
