@@ -18,7 +18,8 @@ import numpy as np
 from mathutils import Vector
 
 import splat_addon
-from bench.reflecting import MAGNIFIED, added, chosen, principled, truth_of
+from bench.reflecting import MAGNIFIED, chosen, truth_of
+from bench.reflecting.objects import added, principled
 from demonstration.scene import add_light, even_world
 from measuring.blender_scene import rendered
 from splat_addon.reference.metrics import mean_flip, psnr, srgb
