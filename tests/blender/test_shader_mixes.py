@@ -5,7 +5,9 @@ import bpy
 import numpy as np
 import pytest
 
+from splat_addon.blender.materials.graphs.channels import constant_of
 from splat_addon.blender.materials.shader_mixes import emitted
+from splat_addon.blender.materials.surface_shaders import Shader, shader_at
 
 RED, BLUE = (0.8, 0.1, 0.1, 1), (0.1, 0.2, 0.9, 1)
 
@@ -118,8 +120,36 @@ def test_shaders_that_are_mixed_in_many_ways_are_each_baked_once(tree, baked):
     shares = np.linalg.matrix_power([[0.75, 0.25], [0.5, 0.5]], 5)[0]
     assert np.abs(baked(first).colors - shares @ (RED, BLUE)).max() < 2e-3
     nodes = len(tree.nodes)
-    emitted(tree, first, "color")
+    emitted(shader_at(tree.get_output_node("ALL").inputs["Surface"]), "color")
     assert len(tree.nodes) == nodes + 9
+
+
+def test_shaders_in_groups_and_handed_into_them_are_mixed(tree):
+    """A group that mixes one of its own with one that it is given; what it is given comes from another group."""
+    inner, outer = (bpy.data.node_groups.new(name, "ShaderNodeTree") for name in ("inner", "outer"))
+    for group in (inner, outer):
+        group.interface.new_socket("Shader", in_out="OUTPUT", socket_type="NodeSocketShader")
+    outer.interface.new_socket("Given", in_out="INPUT", socket_type="NodeSocketShader")
+    ends = [group.nodes.new("NodeGroupOutput") for group in (inner, outer)]
+    own = [group.nodes.new("ShaderNodeBsdfDiffuse") for group in (inner, outer)]
+    for shader, color in zip(own, (RED, BLUE), strict=True):
+        rgb = shader.id_data.nodes.new("ShaderNodeRGB")
+        rgb.outputs[0].default_value = color
+        shader.id_data.links.new(rgb.outputs[0], shader.inputs["Color"])
+    inner.links.new(own[0].outputs[0], ends[0].inputs[0])
+    mix = joined(outer, "ShaderNodeMixShader", outer.nodes.new("NodeGroupInput"), own[1], 0.25)
+    outer.links.new(mix.outputs[0], ends[1].inputs[0])
+    nodes = [tree.nodes.new("ShaderNodeGroup") for _ in range(2)]
+    for node, group in zip(nodes, (inner, outer), strict=True):
+        node.node_tree = group
+    tree.links.new(nodes[0].outputs[0], nodes[1].inputs[0])
+    surface = tree.get_output_node("ALL").inputs["Surface"]
+    tree.links.new(nodes[1].outputs[0], surface)
+    made = emitted(shader_at(surface), "color")
+    end = made.node.id_data.nodes.new("ShaderNodeEmission")
+    made.node.id_data.links.new(made, end.inputs["Color"])
+    read = Shader(end, surface, shader_at(surface).groups)
+    assert np.allclose(constant_of(read, "Color"), 0.75 * np.array(RED[:3]) + 0.25 * np.array(BLUE[:3]))
 
 
 def test_a_muted_mix_hands_on_its_first_shader(tree, baked):

@@ -212,7 +212,7 @@ def _emit(material: bpy.types.Material, channel: str) -> None:
     emission = tree.nodes.new("ShaderNodeEmission")
     sockets = SHADERS[shader.bl_idname][channel] if shader.bl_idname in SHADERS else ()
     if not sockets:
-        tree.links.new(emitted(tree, shader, channel), emission.inputs["Color"])
+        tree.links.new(emitted(found, channel), emission.inputs["Color"])
     for socket, into in zip(sockets, ("Color", "Strength"), strict=False):
         source, target = shader.inputs[socket], emission.inputs[into]
         if linked(source) is not None:

@@ -7,14 +7,15 @@ Add Shader adds them, and each leaf shader supplies its own (`mixed_leaves`). Op
 
 from __future__ import annotations
 
+from itertools import takewhile
 from typing import NamedTuple
 
 import bpy
 
 from .graphs.channels import mix_factor
 from .mixed_leaves import LEAVES
-from .node_walks import linked, passed_through_link, within
-from .surface_shaders import CLEAR, Shader, parts
+from .node_walks import input_of, linked, within
+from .surface_shaders import CLEAR, Shader, folded, parts
 
 Node = bpy.types.Node
 Tree = bpy.types.NodeTree
@@ -39,57 +40,40 @@ def _emits(end: Node) -> bool:
     return strength is not None and (strength.is_linked or strength.default_value != 0)
 
 
-def emitted(tree: Tree, shader: Node, channel: str) -> Socket:
-    """The output of new nodes for one channel of a tree of shaders; colours are weighted by coverage."""
-    found = _combined(tree, shader, channel, {})
+def emitted(shader: Shader, channel: str) -> Socket:
+    """The output of new nodes for one channel of a tree of shaders, beside the last of these; colours are weighted by
+    coverage. The groups among them must belong to their nodes alone."""
+    tree = shader.node.id_data
+    found = folded(shader, lambda leaf: LEAVES[channel](_Sockets(leaf.node.id_data, leaf.node)), _joined, _BLACK)
     if channel == "opacity":
         found = _mixed(tree, "SUBTRACT", _WHITE, found)
     return found if isinstance(found, Socket) else _mixed(tree, "ADD", found, _BLACK)
 
 
-def _combined(tree: Tree, shader: Node | None, channel: str, made: dict[Node, Given]) -> Given:
-    """What one channel of a tree of shaders is. made: the same for those that were reached already, which is added to;
-    a ring of shaders ends at black."""
-    if shader is None:
-        return _BLACK
-    if shader not in made:
-        made[shader] = _BLACK
-        made[shader] = _of_one(tree, shader, channel, made)
-    return made[shader]
+def _joined(shader: Shader, fed: list[tuple[Shader | None, Given]]) -> Given:
+    parts = [_moved(value, each, shader) for each, value in fed]
+    if len(parts) < 2:
+        return parts[0] if parts else _BLACK
+    node, tree = shader.node, shader.node.id_data
+    return _mixed(tree, "ADD", *parts) if node.type == "ADD_SHADER" else _mixed(tree, "MIX", *parts, node.inputs[0])
 
 
-def _of_one(tree: Tree, shader: Node, channel: str, made: dict[Node, Given]) -> Given:
-    if shader.mute:
-        link = passed_through_link(shader)
-        return _combined(tree, _source(link.from_socket) if link else None, channel, made)
-    if shader.type == "GROUP" and shader.node_tree is not None:
-        return _out_of_group(shader, channel, made)
-    if shader.type in ("MIX_SHADER", "ADD_SHADER"):
-        first, second = (_combined(tree, _source(s), channel, made) for s in shader.inputs if s.type == "SHADER")
-        if shader.type == "ADD_SHADER":
-            return _mixed(tree, "ADD", first, second)
-        return _mixed(tree, "MIX", first, second, shader.inputs[0])
-    return LEAVES[channel](_Sockets(tree, shader))
-
-
-def _out_of_group(group: Node, channel: str, made: dict[Node, Given]) -> Given:
-    """A new output of a group, which belongs to this node alone, for its first shader."""
-    shader = next(socket for socket in group.outputs if socket.type == "SHADER")
-    inner = within(group, shader.identifier)
-    if inner is None:
-        return _BLACK
-    tree = group.node_tree
-    found = _combined(tree, _source(inner), channel, made)
-    if not isinstance(found, Socket):
-        return found
-    added = tree.interface.new_socket(channel, in_out="OUTPUT", socket_type="NodeSocketColor")
-    tree.links.new(found, within(group, added.identifier))
-    return next(socket for socket in group.outputs if socket.identifier == added.identifier)
-
-
-def _source(socket: Socket) -> Node | None:
-    source = linked(socket)
-    return source and source[0]
+def _moved(value: Given, start: Shader | None, end: Shader) -> Given:
+    """A value beside one shader, beside another, out of groups and into others."""
+    if start is None or not isinstance(value, Socket):
+        return value
+    inner, outer = start.groups, end.groups
+    shared = sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], zip(inner, outer, strict=False)))
+    for group in reversed(inner[shared:]):
+        added = group.node_tree.interface.new_socket("channel", in_out="OUTPUT", socket_type="NodeSocketColor")
+        group.node_tree.links.new(value, within(group, added.identifier))
+        value = next(socket for socket in group.outputs if socket.identifier == added.identifier)
+    for group in outer[shared:]:
+        added = group.node_tree.interface.new_socket("channel", in_out="INPUT", socket_type="NodeSocketColor")
+        group.id_data.links.new(value, input_of(group, added.identifier))
+        inside = group.node_tree.nodes.new("NodeGroupInput")
+        value = next(socket for socket in inside.outputs if socket.identifier == added.identifier)
+    return value
 
 
 class _Sockets(NamedTuple):

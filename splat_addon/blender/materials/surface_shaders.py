@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import bpy
 
@@ -194,6 +195,32 @@ def mixed_sockets(shader: Shader) -> list[Socket] | None:
         link = passed_through_link(node)
         return [link.from_socket] if link else []
     return {"ADD_SHADER": node.inputs[:], "MIX_SHADER": node.inputs[1:]}.get(node.type)
+
+
+def folded(
+    shader: Shader | None,
+    leaf: Callable[[Shader], Any],
+    joined: Callable[[Shader, list[tuple[Shader | None, Any]]], Any],
+    nothing: Any,
+) -> Any:
+    """What a tree of shaders comes to.
+
+    leaf: of a shader that mixes no others. joined: of one that mixes, adds or passes on others, with what these come
+    to. nothing: without a shader, and where a ring of shaders closes.
+    """
+    made: dict[Shader, Any] = {}
+
+    def value(shader: Shader | None) -> Any:
+        if shader is None:
+            return nothing
+        if shader not in made:
+            made[shader] = nothing
+            sockets = mixed_sockets(shader)
+            fed = [shader.feeding(socket) for socket in sockets or ()]
+            made[shader] = leaf(shader) if sockets is None else joined(shader, [(each, value(each)) for each in fed])
+        return made[shader]
+
+    return value(shader)
 
 
 def _fed_first(shader: Shader, reached: set[Shader]) -> list[Shader]:

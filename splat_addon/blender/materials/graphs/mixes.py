@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Reads a tree of mixed and added shaders as graphs of its colour, opacity and emission.
 
-As in `shader_mixes`, which makes nodes instead of steps, Mix Shader mixes by its factor, Add Shader adds, and each leaf
-supplies its own (`mixed_leaves`).
+Mix Shader mixes by its factor, Add Shader adds, and each leaf supplies its own (`mixed_leaves`). `shader_mixes` makes
+nodes of the same walk (`folded`).
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import bpy
 
 from ..mesh_layers import MeshLayers
 from ..mixed_leaves import LEAVES
-from ..surface_shaders import Shader, mixed_sockets
+from ..surface_shaders import Shader, folded
 from ..texture_images import UnreadableError
 from .channels import ReadGraph, limited
 from .reading import GraphReading, Value
@@ -50,21 +50,9 @@ def _factor(reading: GraphReading, mix: Shader) -> Value:
 def combined(reading: GraphReading, shader: Shader | None, leaf: Leaf, factor: Leaf = _factor) -> Value:
     """What a tree of shaders comes to. leaf: of a shader that mixes no others; factor: of a Mix Shader. Both are called
     with a reading inside the shader's groups. A ring of shaders ends at black."""
-    made: dict[Shader, Value] = {}
 
-    def value(shader: Shader | None) -> Value:
-        if shader is None:
-            return _ZERO
-        if shader not in made:
-            made[shader] = _ZERO
-            made[shader] = of_one(shader)
-        return made[shader]
-
-    def of_one(shader: Shader) -> Value:
-        inside, sockets = reading.inside(shader.groups), mixed_sockets(shader)
-        if sockets is None:
-            return leaf(inside, shader)
-        parts = [value(shader.feeding(socket)) for socket in sockets]
+    def joined(shader: Shader, fed: list[tuple[Shader | None, Value]]) -> Value:
+        parts = [value for _, value in fed]
         if len(parts) < 2:
             return parts[0] if parts else _ZERO
         width = max(part.width for part in parts)
@@ -73,10 +61,10 @@ def combined(reading: GraphReading, shader: Shader | None, leaf: Leaf, factor: L
         if shader.node.type == "ADD_SHADER":
             share, parts = Value((0.5,)), [reading.add("multiplied", Value((2.0,)), p, width=width) for p in parts]
         else:
-            share = factor(inside, shader)
+            share = factor(reading.inside(shader.groups), shader)
         return reading.add("mixed", share, *parts, settings=(True,), width=width, is_color=width == 3)
 
-    return value(shader)
+    return folded(shader, lambda shader: leaf(reading.inside(shader.groups), shader), joined, _ZERO)
 
 
 @dataclass(frozen=True)
