@@ -42,7 +42,7 @@ def polygon_hits(scene: Scene, camera: Camera, grid: RayGrid, epsilon: float, ep
     columns = 10 + len(PLAIN.numbers) * has_finish(scene)
     found = Hits(np.full(n, np.inf), np.zeros(n), np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, columns)))
     radii = dict(zip(scene.table.placed, scene.table.overlaps, strict=True))
-    for instance in scene.polygons:
+    for instance in (one for one in scene.polygons if one.is_seen):
         corners = eye_corners(instance, camera)
         depth, triangle, shares = whole_hits(instance, corners, origin, direction, camera.near, camera.far)
         rays = np.flatnonzero(depth < found.depth)

@@ -70,7 +70,8 @@ def _moved(splats: Splats, lamp: np.ndarray) -> np.ndarray:
 
 def casting(scene: Scene) -> Scene:
     """The scene with only the instances that cast shadows."""
-    kinds = {name: tuple(i for i in getattr(scene, name) if i.casts_shadow) for name in ("surfels", "polygons")}
+    of = {name: (i for i in getattr(scene, name) if i.casts_shadow) for name in ("surfels", "polygons")}
+    kinds = {name: tuple(i if i.is_seen else replace(i, is_seen=True) for i in some) for name, some in of.items()}
     return replace(scene, **kinds, lights=())
 
 

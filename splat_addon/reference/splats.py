@@ -124,7 +124,7 @@ class Splats:
 
 def eye_splats(scene: Scene, camera: Camera) -> Splats:
     """Every instance's surfels in the eye space of `camera`."""
-    parts = [_instance_splats(instance, camera, has_finish(scene)) for instance in scene.surfels]
+    parts = [_instance_splats(instance, camera, has_finish(scene)) for instance in scene.surfels if instance.is_seen]
     if not parts:
         vectors, flags = np.zeros((6, 0, 3)), np.zeros((4, 0), bool)
         own = flags[0], np.zeros(0, object), *_no_uvs(0), np.zeros((0, 2, 3)), flags[1]

@@ -247,6 +247,14 @@ def test_what_lies_in_an_object_is_left_out_with_it_unless_the_camera_is_inside(
     assert probes_of(scene, within)[0][0].left_out == ()
 
 
+def test_reflections_show_what_the_camera_does_not_see_but_not_what_they_are_told_not_to():
+    hidden, shown = replace(FLOOR, is_seen=False), replace(FLOOR, is_reflected=False)
+    scene = Scene(polygons=[ball(), hidden, shown])
+    assert [one.is_seen for one in drawing._left_out(scene, (0,)).polygons] == [False, True, False]
+    assert drawing._left_out(replace(scene, polygons=scene.polygons[:1]), ()).polygons == scene.polygons[:1]
+    assert probes_of(Scene(polygons=[replace(ball(), is_seen=False)]), camera()) == ((), 0)
+
+
 def test_a_light_probe_serves_what_is_in_its_box_in_the_place_of_a_probe_of_its_own():
     axes = np.diag((2.0, 2.0, 2.0))
     scene = Scene(polygons=[ball(), ball(place=(9, 0, 0)), FLOOR], light_probes=(LightProbe((0, 0, 1.2), axes),))

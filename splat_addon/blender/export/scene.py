@@ -263,7 +263,7 @@ class _Things:
     def _kind(self, entry: bpy.types.DepsgraphObjectInstance) -> _Kind:
         """The kind of an entry, whose meshes are read while the entry is valid."""
         kind = _Kind(entry.object.name)
-        if _is_seen(entry, self._depsgraph, kind.notes):
+        if any(_ways_it_shows(entry, self._depsgraph).values()):
             try:
                 self._fill(kind, entry)
             except Exception as error:
@@ -284,7 +284,7 @@ class _Things:
         owner = owner_of(entry)
         fields = {
             "light_set": self._light_sets.of_instance(entry),
-            "casts_shadow": object_.visible_shadow,
+            **_ways_it_shows(entry, self._depsgraph),
             "may_change": may_change(entry),
             "name": object_.name,
             "index": object_.pass_index,
@@ -333,16 +333,15 @@ def _world_of(depsgraph: bpy.types.Depsgraph) -> bpy.types.World | None:
     return getattr(view_layer, "world_override", None) or depsgraph.scene.world
 
 
-def _is_seen(entry: bpy.types.DepsgraphObjectInstance, depsgraph: bpy.types.Depsgraph, notes: Notes) -> bool:
-    """Whether the camera sees it. Objects hidden from the camera cast no shadow in this engine either; a note says
-    so."""
-    owner = owner_of(entry)
+def _ways_it_shows(entry: bpy.types.DepsgraphObjectInstance, depsgraph: bpy.types.Depsgraph) -> dict[str, bool]:
+    """The fields of an instance by which the camera, reflections and lights see it: Blender's Ray Visibility."""
+    object_, owner = entry.object, owner_of(entry)
     is_indirect = owner.indirect_only_get(view_layer=depsgraph.view_layer)
-    if entry.object.visible_camera and owner.visible_camera and not is_indirect:
-        return True
-    if entry.object.type in {"MESH", *_NOT_DRAWN} and entry.object.visible_shadow:
-        notes.add(f"{owner.name} is hidden from the camera; this engine hides its shadow too")
-    return False
+    return {
+        "is_seen": object_.visible_camera and owner.visible_camera and not is_indirect,
+        "is_reflected": object_.visible_glossy and owner.visible_glossy,
+        "casts_shadow": object_.visible_shadow,
+    }
 
 
 def _lights(depsgraph: bpy.types.Depsgraph, notes: Notes) -> tuple[list[Light], LightSets, list[LightProbe]]:

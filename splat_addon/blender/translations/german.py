@@ -490,6 +490,7 @@ GERMAN = {
     "Float 32": "Float 32",
     "Follow Source": "Quelle folgen",
     "Gaussian Splats": "Gaussian Splats",
+    "Glossy": "Glänzend",
     "Graphics Device": "Grafikgerät",
     "Grazing Angle": "Streifwinkel",
     "Grazing Rejection": "Streifende verwerfen",

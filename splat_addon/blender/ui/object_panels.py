@@ -27,6 +27,7 @@ class OBJECT_PT_surfel_visibility(EnginePanel, bpy.types.Panel):
         super().draw(context)
         column = self.layout.column()
         column.prop(context.object, "visible_camera", text="Camera")
+        column.prop(context.object, "visible_glossy", text="Glossy")
         column.prop(context.object, "visible_shadow", text="Shadow")
 
 

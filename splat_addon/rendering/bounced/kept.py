@@ -11,7 +11,7 @@ from .light import BouncedLight, bounced_light
 from .solids import are_solid
 
 #: Fields of scenes and instances that bounced light does not depend on: what is not seen still sends light.
-_NO_MATTER = frozenset({"is_seen", "background", "hides_environment", "light_probes"})
+_NO_MATTER = frozenset({"is_seen", "is_reflected", "background", "hides_environment", "light_probes"})
 
 
 class Bounced:

@@ -106,10 +106,14 @@ def _panorama(scene: Scene, probe: Probe, size: tuple[int, int]) -> Panorama:
 
 
 def _left_out(scene: Scene, rows: tuple[int, ...]) -> Scene:
-    """The scene in which what is in these rows of its table only casts its shadow."""
+    """The scene of which reflections are seen, where what is in these rows of its table only casts its shadow."""
     left_out = {id(scene.table.placed[row]) for row in rows}
+    if not left_out and all(kind.placed.is_seen == kind.placed.is_reflected for kind in scene.table.kinds):
+        return scene
 
     def of(placed) -> tuple:
-        return tuple(replace(one, is_seen=False) if id(one) in left_out else one for one in placed)
+        shown = (one.is_reflected and id(one) not in left_out for one in placed)
+        pairs = zip(placed, shown, strict=True)
+        return tuple(one if one.is_seen == is_seen else replace(one, is_seen=is_seen) for one, is_seen in pairs)
 
-    return replace(scene, surfels=of(scene.surfels), polygons=of(scene.polygons)) if left_out else scene
+    return replace(scene, surfels=of(scene.surfels), polygons=of(scene.polygons))

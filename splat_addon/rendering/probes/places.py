@@ -43,7 +43,7 @@ class Probe:
 
 def glossy(table: InstanceTable) -> np.ndarray:
     """(n,) bool: which objects show their surroundings."""
-    return table.of_kinds(lambda placed: _least_roughness(placed) <= 1)
+    return table.of_kinds(lambda placed: placed.is_seen and _least_roughness(placed) <= 1)
 
 
 def probes_of(scene: Scene, camera: Camera) -> tuple[tuple[Probe, ...], int]:

@@ -46,7 +46,8 @@ class Placed:
         cover more than a pixel, so that surfels never lie too far apart (Guennebaud et al. 2006, section 5.2).
     is_holdout: it hides everything behind it and shows nothing: the picture has an alpha of 0 there.
     may_change: whether its shape may be another in each frame, so that little is prepared for it.
-    is_seen: whether it is in the picture; otherwise it only casts its shadow.
+    is_seen: whether it is in the picture; otherwise it only casts its shadow and is reflected. is_reflected: whether
+        reflections show it.
     """
 
     shape: Surfels | Polygons
@@ -62,6 +63,7 @@ class Placed:
     is_holdout: bool = False
     may_change: bool = False
     is_seen: bool = True
+    is_reflected: bool = True
     #: polygons never are
     is_merged: ClassVar[bool] = False
     #: surfels never do
