@@ -25,6 +25,9 @@ _ASIDE, _MOST = 0.002, 100_000
 #: Focal length in millimetres of a camera in a room, and directions in which it looks for the farthest wall.
 WIDE, _SECTORS = 20.0, 24
 
+#: The share of a scan that a camera must see for its picture to be one of the scan.
+_SEEN = 0.01
+
 #: How many times as far as a scan reaches 3D views show.
 _VIEWS = 5.0
 
@@ -54,10 +57,24 @@ def color_without_colors(made: bpy.types.Object, attributes: dict[str, np.ndarra
     getattr(made, OBJECT_SETTINGS).color_by = "INTENSITY" if has_intensity else "HEIGHT"
 
 
+def sees(context: bpy.types.Context, camera: bpy.types.Object, made: bpy.types.Object, positions: np.ndarray) -> bool:
+    """Whether enough of a new object is in the picture of a camera; of a panorama, everything is. positions: as of
+    `add_camera`."""
+    if camera.type != "CAMERA" or camera.data.type not in ("PERSP", "ORTHO"):
+        return True
+    render = context.scene.render
+    size = {"x": render.resolution_x, "y": render.resolution_y}
+    projection = camera.calc_matrix_camera(context.evaluated_depsgraph_get(), **size)
+    matrix = np.array(projection @ camera.matrix_world.inverted_safe() @ made.matrix_world, np.float64)
+    some = positions[:: max(len(positions) // _MOST, 1)].astype(np.float64)
+    *places, w = (some @ matrix[:, :3].T + matrix[:, 3]).T
+    return bool((np.abs(places) < w).all(axis=0).mean() >= _SEEN)
+
+
 def add_camera(
     context: bpy.types.Context, made: bpy.types.Object, positions: np.ndarray, scanner: np.ndarray | None = None
 ) -> None:
-    """Give a scene without a camera one that sees a new object, and a world if it has none: from above the front, or
+    """Give a scene a camera that sees a new object, and a world if it has none: from above the front, or
     from the scanner's place if that is among the points, as in a room.
 
     positions: (N, 3) in the object's space. scanner: (3,) its place in the world, if it is known.

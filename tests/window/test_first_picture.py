@@ -14,10 +14,10 @@ ROOM = 0.31
 
 @pytest.fixture(scope="module")
 def first(in_a_window):
-    return in_a_window("first_picture.py", "--window-geometry", "0", "0", "1000", "700")[0]
+    return in_a_window("first_picture.py", "--enable-event-simulate", "--window-geometry", "0", "0", "1000", "700")[0]
 
 
-@pytest.mark.parametrize("what", ["mesh", "scan"])
+@pytest.mark.parametrize("what", ["mesh", "scan", "file"])
 def test_five_clicks_make_a_lit_picture_of_surfels(first, what):
     assert len(first[what]["clicks"]) <= 5 and first[what]["surfels"] > 1000
     pixels = np.asarray(Image.open(first[what]["picture"]).convert("L"), np.float32) / 255

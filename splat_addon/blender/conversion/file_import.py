@@ -20,7 +20,7 @@ from ..geometry.attributes import fill, offset_of
 from ..geometry.scan_attributes import keep_scanner_path, write_scan_attributes
 from ..geometry.scene_offset import keep_offset, offset_for_scan, scene_offset, taken_from
 from ..geometry.sources import is_surfel_object
-from ..scan_look import add_camera, color_without_colors, give_scan_look, widen_views
+from ..scan_look import add_camera, color_without_colors, give_scan_look, sees, widen_views
 from ..spoken import said
 from ..working_space import surfels_from_rec709
 from .points_settings import PointsProperties, keywords, viewpoint
@@ -143,16 +143,21 @@ class FileImport:
 
     def show(self, context: bpy.types.Context, made: bpy.types.Object) -> None:
         """Let the first picture of what `place` made be right: choose the colours of a scan that has none, the look of
-        scans if it is the scene's first, and a camera if there is none. What was not captured stays as it is."""
+        scans if it is the scene's first, and a camera if there is none, or none that sees the first scan. What was not
+        captured stays as it is."""
         if not self._is_captured:
             return
         if not self._has_colors:
             color_without_colors(made, self._attributes)
-        if not any(is_surfel_object(each) for each in context.scene.objects if each != made):
+        is_first = not any(is_surfel_object(each) for each in context.scene.objects if each != made)
+        if is_first:
             self.notes.append(give_scan_look(context.scene))
         widen_views(context, made, self.surfels.positions)
-        if context.scene.camera is None:
-            add_camera(context, made, self.surfels.positions, self._scanner)
+        camera, positions = context.scene.camera, self.surfels.positions
+        if camera is None or (is_first and not sees(context, camera, made, positions)):
+            add_camera(context, made, positions, self._scanner)
+            if camera is not None:
+                self.notes.append(f"Took a new camera, because {camera.name!r} sees nothing of the scan")
 
     def status(self) -> str:
         """What the status bar shows."""

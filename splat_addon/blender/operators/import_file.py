@@ -106,7 +106,7 @@ tell"""
         description=(
             "Show the scan as it was captured, without any light: with Captured Color and Eye-Dome Lighting, if it is "
             "the scene's first; in colors of its intensity or height, if it has none; from a new camera, if the scene "
-            "has none"
+            "has none that sees it"
         ),
         default=True,
     )

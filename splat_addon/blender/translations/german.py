@@ -269,11 +269,12 @@ GERMAN = {
     ),
     (
         "Show the scan as it was captured, without any light: with Captured Color and Eye-Dome Lighting, if it is the "
-        "scene's first; in colors of its intensity or height, if it has none; from a new camera, if the scene has none"
+        "scene's first; in colors of its intensity or height, if it has none; from a new camera, if the scene has none "
+        "that sees it"
     ): (
         "Den Scan zeigen, wie er aufgenommen wurde, ohne Licht: mit aufgenommener Farbe und Eye-Dome-Beleuchtung, wenn "
         "er der erste der Szene ist; in Farben seiner Intensität oder Höhe, wenn er keine hat; von einer neuen Kamera, "
-        "wenn die Szene keine hat"
+        "wenn die Szene keine hat, die ihn sieht"
     ),
     "Eye-Dome Lighting": "Eye-Dome-Beleuchtung",
     "Radius": "Radius",

@@ -14,8 +14,9 @@ import numpy as np
 from ..vectors import unit
 from .hashes import random
 
-#: Kernels in each cell, and the share of positive ones.
+#: Kernels in each cell, the first of three seeds of each, and the share of positive ones.
 _KERNELS, _SECOND_MOMENT = 8, 0.5
+_FIRST_SEEDS = 3 * np.arange(_KERNELS, dtype=np.float32)[:, None]
 
 #: dimensions -> the integral of the squared kernel, and standard deviations that make the result 0 to 1
 _INTEGRALS = {2: 0.25, 3: 1 / (4 * np.sqrt(2))}
@@ -34,16 +35,18 @@ def gabor(vector, scale, frequency, anisotropy, angle, direction, dimensions: st
     sums = np.zeros((2, places.shape[1]), np.float32)
     for steps in product((-1, 0, 1), repeat=len(places)):
         step = np.float32(steps[::-1])[:, None]
-        for k in range(0, 3 * _KERNELS, 3):
-            seeds = [[*(cells + step), np.float32([k + j])] for j in range(3)]
-            off = inside - step - np.stack(_centre(seeds[1])).take(of_sample, axis=1)
+        # a row for each kernel
+        seeds = [[*(cells + step), _FIRST_SEEDS + np.float32(k)] for k in range(3)]
+        directions, centres, signs = np.stack(_of_direction(seeds[0])), np.stack(_centre(seeds[1])), random(*seeds[2])
+        for k in range(_KERNELS):
+            off = inside - step - centres[:, k].take(of_sample, axis=1)
             square = (off * off).sum(axis=0)
             near = np.flatnonzero(square < 1)
             cell, off, square = of_sample[near], off[:, near], square[near]
-            drawn = [number.take(cell) for number in _of_direction(seeds[0])]
+            drawn = directions[:, k].take(cell, axis=1)
             along = _directions(drawn, *(_at(given, near) for given in (isotropy, angle, direction)))
             window = np.exp(-np.float32(np.pi) * square) * (1 + np.cos(np.float32(np.pi) * square)) / 2
-            weight = np.where(random(*seeds[2]).take(cell) < 0.5, -window, window)
+            weight = np.where(signs[k].take(cell) < 0.5, -window, window)
             turn = np.float32(2 * np.pi) * _at(frequency, near) * sum(o * a for o, a in zip(off, along, strict=True))
             sums[:, near] += weight * np.cos(turn), weight * np.sin(turn)
     real, imaginary = sums
@@ -72,7 +75,7 @@ def _of_direction(seed: list[np.ndarray]) -> list[np.ndarray]:
     return [random(x, y, z, w), random(z, x, w, y)]
 
 
-def _directions(drawn: list[np.ndarray], isotropy, angle, direction) -> list[np.ndarray]:
+def _directions(drawn: np.ndarray, isotropy, angle, direction) -> list[np.ndarray]:
     """The unit vector along which a kernel oscillates."""
     if len(drawn) == 1:
         angle = angle + (drawn[0] - np.float32(0.5)) * np.float32(np.pi) * isotropy

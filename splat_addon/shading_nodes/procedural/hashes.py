@@ -25,14 +25,14 @@ def hashed(*words: np.ndarray) -> np.ndarray:
     with np.errstate(over="ignore"):
         start = np.uint32((_START + (len(words) << 2)) & 0xFFFFFFFF)
         a, b, c = (start + words[k] if k < min(len(words), 3) else start for k in range(3))
-        a, b, c = (np.array(x) for x in np.broadcast_arrays(a, b, c))
-        if len(words) == 4:
+        a, b, c, *fourth = (np.array(x) for x in np.broadcast_arrays(a, b, c, *words[3:]))
+        if fourth:
             for bits in _MIX:
                 a -= c
                 a ^= _turned(c, bits)
                 c += b
                 a, b, c = b, c, a
-            a += words[3]
+            a += fourth[0]
         for bits in _FINAL:
             c ^= b
             c -= _turned(b, bits)

@@ -126,6 +126,19 @@ def test_the_first_scan_of_a_scene_gets_the_look_of_scans_and_a_camera_that_sees
     assert settings.shading == "phong" and scene.camera is not None
 
 
+@pytest.mark.parametrize("middle", [(0, 0, 0), (300, 0, 0)])
+def test_the_first_scan_keeps_a_camera_that_sees_it_and_gets_one_otherwise(camera, middle, tmp_path):
+    camera.location = 0, 0, 20
+    rows = (f"{middle[0] + x} {middle[1] + y} {middle[2]}" for x in range(-2, 3) for y in range(-2, 3))
+    (tmp_path / "scan.xyz").write_text("\n".join(rows))
+    bpy.ops.import_scene.surfels_ply(filepath=str(tmp_path / "scan.xyz"), isolated="KEEP")
+    scene = bpy.context.scene
+    assert (scene.camera == camera) == (middle == (0, 0, 0))
+    bpy.context.view_layer.update()
+    x, y, depth = camera_places(scene, Vector(middle))
+    assert 0 < x < 1 and 0 < y < 1 and depth > 0
+
+
 def camera_places(scene, place):
     """Where a place lies in the camera's picture: 0 to 1 across and up, and its depth."""
     return world_to_camera_view(scene, scene.camera, place)
