@@ -67,14 +67,16 @@ def picture_of_a_file():
     window = bpy.context.window_manager.windows[0]
     clicks = ["the file, dropped on the view", "Import", "F12"]
     area = view3d()[0]
-    middle = {"x": area.x + area.width // 2, "y": area.y + area.height // 2}
-    window.event_simulate("MOUSEMOVE", "NOTHING", **middle)
+    # the dialog fills the height of the window, with its button at the lower edge
+    place = {"x": area.x + area.width // 2, "y": 27}
+    window.event_simulate("MOUSEMOVE", "NOTHING", **place)
     yield from redrawn()
     with in_view():
         bpy.ops.wm.drop_import_file("INVOKE_DEFAULT", directory=str(file.parent), files=[{"name": file.name}])
     yield from redrawn()
-    for value in ("PRESS", "RELEASE"):
-        window.event_simulate("RET", value, **middle)
+    for kind, value in (("MOUSEMOVE", "NOTHING"), ("LEFTMOUSE", "PRESS"), ("LEFTMOUSE", "RELEASE")):
+        window.event_simulate(kind, value, **place)
+        yield from redrawn()
     yield from until(lambda: "scan" in bpy.data.objects and not is_modal(), "the file is imported")
     with in_view():
         bpy.ops.render.render()
