@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs inside a Blender window: clicks from the default scene to a rendered picture, the same with a scan in place of
-the cube and with the file of a scan that is dropped on the view, and measures how wide labels are.
+the cube, and measures how wide labels are.
 
 test_first_picture.py reads the report: the clicks, what they made, and the widths.
 """
@@ -57,34 +57,6 @@ def picture(name: str):
     return {"clicks": clicks, "surfels": final_render.last_frame_stats["splats"], "picture": str(file)}
 
 
-def picture_of_a_file():
-    """From a file that is dropped on the view to a picture. The scan lies where no camera sees it."""
-    points = np.random.default_rng(2).normal(size=(4000, 3))
-    points *= 30 / np.linalg.norm(points, axis=1, keepdims=True)
-    colors = np.clip(128 + 4 * points, 0, 255)
-    file = REPORT.with_name("scan.xyz")
-    np.savetxt(file, np.hstack([points + np.array((200, 100, 0)), colors]), "%.3f %.3f %.3f %d %d %d")
-    window = bpy.context.window_manager.windows[0]
-    clicks = ["the file, dropped on the view", "Import", "F12"]
-    area = view3d()[0]
-    # the dialog fills the height of the window, with its button at the lower edge
-    place = {"x": area.x + area.width // 2, "y": 27}
-    window.event_simulate("MOUSEMOVE", "NOTHING", **place)
-    yield from redrawn()
-    with in_view():
-        bpy.ops.wm.drop_import_file("INVOKE_DEFAULT", directory=str(file.parent), files=[{"name": file.name}])
-    yield from redrawn()
-    for kind, value in (("MOUSEMOVE", "NOTHING"), ("LEFTMOUSE", "PRESS"), ("LEFTMOUSE", "RELEASE")):
-        window.event_simulate(kind, value, **place)
-        yield from redrawn()
-    yield from until(lambda: "scan" in bpy.data.objects and not is_modal(), "the file is imported")
-    with in_view():
-        bpy.ops.render.render()
-    shown = REPORT.with_name(f"{REPORT.stem}_file.png")
-    bpy.data.images["Render Result"].save_render(str(shown))
-    return {"clicks": clicks, "surfels": final_render.last_frame_stats["splats"], "picture": str(shown)}
-
-
 def as_in_a_new_file():
     """Put away what the first picture needed, and select a scan of a sphere in place of the cube."""
     view3d()[0].spaces[0].show_region_ui = False
@@ -95,7 +67,7 @@ def as_in_a_new_file():
     points = np.random.default_rng(1).normal(size=(4000, 3))
     mesh = bpy.data.meshes.new("scan")
     mesh.from_pydata((points / np.linalg.norm(points, axis=1, keepdims=True)).tolist(), [], [])
-    scan = bpy.data.objects.new("sphere", mesh)
+    scan = bpy.data.objects.new("scan", mesh)
     bpy.context.scene.collection.objects.link(scan)
     scan.select_set(True)
     bpy.context.view_layer.objects.active = scan
@@ -115,9 +87,6 @@ def steps():
     as_in_a_new_file()
     yield from redrawn()
     report["scan"] = yield from picture("scan")
-    for made in [each for each in bpy.data.objects if each.type == "MESH"]:
-        bpy.data.objects.remove(made)
-    report["file"] = yield from picture_of_a_file()
     groups = (scene.surfel_conversion, PROPERTY_NAMES), (scene.surfel_points_conversion, POINTS_NAMES)
     properties = [settings.bl_rna.properties[name] for settings, names in groups for name in names]
     # Settings with their name at the left; a switch has it at the right of its box.

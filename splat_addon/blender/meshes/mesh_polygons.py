@@ -57,29 +57,26 @@ def left_out_of_polygons(owner: str, mesh: TriangleMesh) -> Iterator[str]:
 
 
 def _only_at_corners(surface: Surface) -> Iterator[str]:
-    """The channels with images that polygons look up at their corners alone."""
+    """The channels with images or nodes that polygons look up at their corners alone."""
     seen = dict(zip(("roughness", "metallic"), gloss_textures(surface), strict=True)) | {"color": surface.color_texture}
     for name in ("color", "roughness", "metallic", "emission"):
         channel = getattr(surface, name)
-        has_image = channel is not None and any(isinstance(factor, Texture | Computed) for factor in channel.factors)
-        if has_image and seen.get(name) is None:
+        if channel is not None and any(map(_varies_within, channel.factors)) and seen.get(name) is None:
             yield name
 
 
+def _varies_within(factor) -> bool:
+    """Whether a factor may vary within triangles other than from corner to corner."""
+    return isinstance(factor, Texture) or (isinstance(factor, Computed) and not factor.graph.is_constant)
+
+
 def needs_surfels(mesh: TriangleMesh) -> bool:
-    """Whether polygons cannot show what it looks like: it is transparent, or images or nodes that they do not look up
-    make its colours or normals, or nodes its roughness or metal."""
-    return is_transparent(mesh) or any(_lacks_on_polygons(surface) for surface in _used(mesh))
-
-
-def _lacks_on_polygons(surface: Surface) -> bool:
-    if surface.normal_map is not None and normal_map_texture(surface) is None:
-        return True
-    colors = [surface.emission] if surface.color_texture is not None else [surface.color, surface.emission]
-    seen = [factor for channel in colors if channel for factor in channel.factors]
-    rest = [factor for channel in (surface.roughness, surface.metallic) if channel for factor in channel.factors]
-    has_nodes = any(isinstance(factor, Computed) and not factor.graph.is_constant for factor in (*seen, *rest))
-    return has_nodes or any(isinstance(factor, Texture) for factor in seen)
+    """Whether polygons cannot show what it looks like: it is transparent, or has images or nodes that polygons do not
+    look up."""
+    return is_transparent(mesh) or any(
+        any(_only_at_corners(surface)) or (surface.normal_map is not None and normal_map_texture(surface) is None)
+        for surface in _used(mesh)
+    )
 
 
 def is_transparent(mesh: TriangleMesh) -> bool:

@@ -445,6 +445,7 @@ def test_images_at_two_places_are_named(look, picture, said):
     bpy.ops.mesh.primitive_plane_add(size=3)
     bpy.context.object.data.materials.append(principled())
     add_gloss(bpy.context.object.data.materials[0], (8, 8), turned=True)
+    bpy.context.object.surfel_splatting.render_as = "POLYGONS"
     picture()
     assert "has an image or nodes for its metallic and roughness" in said()
 
