@@ -193,21 +193,24 @@ class Renderer:
         is_repeatable=False,
         whole: Scene | None = None,
         eye: np.ndarray | None = None,
+        is_draft: bool = False,
         **options,
     ) -> Shared:
         """The plan of a picture and all that its samples share. repeated: how many samples follow one another. whole:
         the scene that lights what is drawn, if that is only a part. eye: where the viewer is, if the camera is a
-        probe's or behind a mirror. options: of `plan`."""
+        probe's or behind a mirror. is_draft: whether a better picture follows. options: of `plan`."""
         eye = camera.matrix_world[:3, 3] if eye is None else eye
         whole, scene = whole or scene, self.near_and_far.resolved(scene, camera)
         before = no_history(scene) if is_repeatable else history(scene, self._drawn)
         frame_plan = plan(scene, camera, settings, history=before, **options)
         check_samplers(frame_plan, self.device.max_samplers)
-        seen = self._reflected(scene, camera, settings, frame_plan, is_repeatable=is_repeatable, whole=whole, eye=eye)
+        seen = self._reflected(
+            scene, camera, settings, frame_plan, is_repeatable=is_repeatable, whole=whole, eye=eye, is_draft=is_draft
+        )
         is_bounced = frame_plan.found.get(bounced_light.missing) == ""
         light = None
         if is_bounced and frame_plan.passes:
-            light = self.bounced.of(whole, eye, settings.bounces)
+            light = self.bounced.of(whole, eye, settings.bounces, is_draft)
         return Shared(scene, frame_plan, settings, repeated, before, *seen, light)
 
     def _reflected(self, scene: Scene, camera: Camera, settings: Settings, frame_plan: FramePlan, **options):
@@ -269,7 +272,7 @@ class Renderer:
         """
         self._check(settings)
         self._refining = None
-        shared = self._planned(scene, camera, settings)
+        shared = self._planned(scene, camera, settings, is_draft=settings.samples > 1)
         frame_plan = shared.plan
         if not frame_plan.passes:
             pixel = np.array(background_pixel(scene, settings), np.float32).reshape(1, 1, 4)

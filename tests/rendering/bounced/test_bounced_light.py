@@ -47,8 +47,8 @@ def coarse(monkeypatch):
     """Gathers few rays, and counts how often."""
     calls = []
 
-    def few(scene, solid, bounces):
-        calls.append(bounces)
+    def few(scene, solid, bounces, **draft):
+        calls.append((bounces, "draft") if draft else bounces)
         return bounced_light(scene, solid, bounces, **COARSE)
 
     monkeypatch.setattr(kept, "bounced_light", few)
@@ -69,6 +69,14 @@ def test_matt_surfaces_show_what_the_twin_looks_up(render, shading):
     else:
         plain = render(scene, CAMERA, replace(settings, bounces=0))
         assert (np.abs(plain.color - frame.color)[seen].max(axis=1) > 1e-3).mean() > 0.8
+
+
+def test_a_view_begins_with_a_draft_that_serves_until_the_picture_is_refined(coarse):
+    held, eye = kept.Bounced(), CAMERA.matrix_world[:3, 3]
+    drafts = [held.of(SCENE, eye, 1, is_draft=True) for _ in range(2)]
+    refined = held.of(SCENE, eye, 1)
+    assert coarse == [(1, "draft"), 1] and drafts[0] is drafts[1]
+    assert held.of(SCENE, eye, 1, is_draft=True) is refined
 
 
 def test_light_is_kept_while_the_scene_stays(on_device, coarse):
