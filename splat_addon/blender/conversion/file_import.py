@@ -149,15 +149,7 @@ class FileImport:
             return
         if not self._has_colors:
             color_without_colors(made, self._attributes)
-        is_first = not any(is_surfel_object(each) for each in context.scene.objects if each != made)
-        if is_first:
-            self.notes.append(give_scan_look(context.scene))
-        widen_views(context, made, self.surfels.positions)
-        camera, positions = context.scene.camera, self.surfels.positions
-        if camera is None or (is_first and not sees(context, camera, made, positions)):
-            add_camera(context, made, positions, self._scanner)
-            if camera is not None:
-                self.notes.append(f"Took a new camera, because {camera.name!r} sees nothing of the scan")
+        self.notes += show_scan(context, made, self.surfels.positions, self._scanner)
 
     def status(self) -> str:
         """What the status bar shows."""
@@ -167,3 +159,20 @@ class FileImport:
 
     def cancelled(self) -> str:
         return said("The import was cancelled; nothing was changed")
+
+
+def show_scan(
+    context: bpy.types.Context, made: bpy.types.Object, positions: np.ndarray, scanner: np.ndarray | None = None
+) -> list[str]:
+    """Give a scene the look of scans if `made` is its first, and a camera if it has none, or none that sees its first;
+    returns sentences about it.
+    positions, scanner: as of `add_camera`."""
+    is_first = not any(is_surfel_object(each) for each in context.scene.objects if each != made)
+    notes = [give_scan_look(context.scene)] if is_first else []
+    widen_views(context, made, positions)
+    camera = context.scene.camera
+    if camera is None or (is_first and not sees(context, camera, made, positions)):
+        add_camera(context, made, positions, scanner)
+        if camera is not None:
+            notes.append(f"Took a new camera, because {camera.name!r} sees nothing of the scan")
+    return notes

@@ -16,7 +16,7 @@ from mathutils import Matrix
 from ...interchange import SHARED_SUFFIXES, SUFFIXES, text_columns_of
 from ...streaming import id_of
 from ...streaming.layout import MAGIC, SUFFIX
-from ..conversion.file_import import FileImport, Reading
+from ..conversion.file_import import FileImport, Reading, show_scan
 from ..conversion.file_storing import FileStoring
 from ..conversion.placement import placed
 from ..conversion.points_settings import (
@@ -203,6 +203,9 @@ tell"""
             self._tell([note])
         count = self._open(context, keeping.path, is_own=True)
         self._kept = id_of(keeping.path)
+        if keeping.offset is not None and self.has_scan_look:
+            made = context.view_layer.objects.active
+            self._tell(show_scan(context, made, read_surfels(made.data)[0].positions))
         self.report({"INFO"}, said("{count:,} surfels -> {path}", count=count, path=keeping.path))
         self._tell(keeping.notes())
 

@@ -294,6 +294,7 @@ def test_a_scan_goes_to_a_file_and_gives_the_scene_its_offset(saved):
     assert made.data.surfel_splatting.file == "//scan.surfelblocks" and file.count == 900
     assert np.abs(scene_offset(bpy.context.scene) - corner).max() < 100
     assert np.abs(scene_offset(bpy.context.scene) + made.location - file.origin).max() < 1e-4
+    assert bpy.context.scene.surfel_splatting.use_eye_dome and bpy.context.scene.camera
 
 
 def test_too_few_points_leave_no_file(saved):
