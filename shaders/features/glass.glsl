@@ -91,10 +91,13 @@ GlassMet met_glass(vec3 from, vec3 along, float side) {
   float weights = 0.0;
   vec3 normals = vec3(0.0);
   for (int visits = 0; visits < GLASS_VISITS; visits++) {
-    vec3 low = (pane_texel(2 * node, 0).xyz - from) * inverse, high = (pane_texel(2 * node + 1, 0).xyz - from) * inverse;
+    vec3 low = pane_texel(2 * node, 0).xyz, high = pane_texel(2 * node + 1, 0).xyz;
+    bool is_empty = low.x > high.x;
+    low = (low - from) * inverse;
+    high = (high - from) * inverse;
     vec3 first = min(low, high), last = max(low, high);
     float enters = max(max(first.x, first.y), max(first.z, 0.0)), leaves_at = min(min(last.x, last.y), last.z);
-    if (enters <= leaves_at * 1.00001 + 1e-6 && enters <= met.away) {
+    if (!is_empty && enters <= leaves_at * 1.00001 + 1e-6 && enters <= met.away) {
       if (node < leaves) {
         node *= 2;
         continue;
@@ -274,11 +277,6 @@ vec3 light_around(GlassRay ray, float spread, float more, vec3 place) {
   return total / float(GLASS_TAPS);
 }
 
-// The light that surfaces behind the first reflect comes from all around: its ways are not followed.
-vec3 returned(vec3 lost, vec3 normal) {
-  return max(max(lost.r, lost.g), lost.b) > 0.0 ? lost * world_through(vec3(0.0), normal, 1.0) : vec3(0.0);
-}
-
 vec3 through_glass(vec3 position, vec3 normal) {
   vec3 eye = view.is_parallel > 0.5 ? vec3(0.0, 0.0, -1.0) : normalize(position);
   vec3 from = (frame.to_glass * vec4(position, 1.0)).xyz;
@@ -299,7 +297,7 @@ vec3 through_glass(vec3 position, vec3 normal) {
         before = GlassRay(from, along, FAR, vec2(0.0), met.away);
       } else {
         vec2 texel = vec2(GLASS_TEXEL * sqrt(spread2));
-        if (seen_along(GlassRay(from, along, met.away, texel, FAR), seen, is_open)) return share * seen + returned(lost, normal);
+        if (seen_along(GlassRay(from, along, met.away, texel, FAR), seen, is_open)) return share * seen;
       }
     }
     if (met.away >= FAR) break;
@@ -319,13 +317,16 @@ vec3 through_glass(vec3 position, vec3 normal) {
     spread2 = spread2 / (ratio * ratio) + bends * bends / (side > 0.0 ? 1.0 : ratio * ratio);
     side = -side;
   }
-  vec3 light = returned(lost, normal);
-  if (frosted2 > 0.0) return light + share * light_around(before, sqrt(frosted2), max(spread2 - frosted2, 0.0), position);
+  if (frosted2 > 0.0) {
+    // what its other surfaces reflect is spread too, and comes from all around
+    return lost * world_through(vec3(0.0), normal, 1.0)
+        + share * light_around(before, sqrt(frosted2), max(spread2 - frosted2, 0.0), position);
+  }
   vec3 direction = normalize(mat3(frame.from_glass) * along);
   float roughness = roughness_of(GLASS_TEXEL * sqrt(spread2));
-  if (is_open) return light + share * sent_reflection(direction, roughness);
+  if (is_open) return share * sent_reflection(direction, roughness);
   vec3 away = (frame.from_glass * vec4(from, 1.0)).xyz - position;
-  return light + share * world_through(away, direction, roughness);
+  return share * world_through(away, direction, roughness);
 }
 
 void glass_dim(inout Lobe lobe, vec3 base, float metallic) {

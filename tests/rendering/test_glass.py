@@ -102,8 +102,7 @@ def true_picture():
     mirrored, _ = specular_albedo(np.full(len(places), 0.03), -dot(along, normals), f0, np.ones((len(places), 1)))
     seen = CAMERA.pixels_of((at - CAMERA.matrix_world[:3, 3]) @ CAMERA.matrix_world[:3, :3])
     sees = np.abs(seen - 24).max(axis=1) < 28
-    # what is reflected inside comes from all around, of which the sky is all that is known
-    return hits, sees, mirrored * SKY + (1 - mirrored) * (share * color + (TINT - share / TINT) * SKY)
+    return hits, sees, mirrored * SKY + (1 - mirrored) * share * color
 
 
 @pytest.mark.parametrize(("kind", "share", "typical"), [("polygons", 0.93, 0.01), ("surfels", 0.85, 0.02)])

@@ -23,6 +23,8 @@ TEXELS_PER_PRIMITIVE, TEXELS_PER_BOX = 6, 2
 ROW = 1536
 #: More are left out: their texture would take a quarter of a gigabyte.
 MOST_PRIMITIVES = 1 << 21
+#: A box of nothing begins here and ends at the negative of it.
+_OUTSIDE = 1e30
 
 
 @dataclass(frozen=True, eq=False)
@@ -180,7 +182,7 @@ def _tree(low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray, np
         order = np.take_along_axis(each, np.argsort(keys, axis=1, kind="stable"), axis=1).ravel()
         nodes *= 2
     ends = []
-    for values, nothing, of in ((low, np.inf, np.min), (high, -np.inf, np.max)):
+    for values, nothing, of in ((low, _OUTSIDE, np.min), (high, -_OUTSIDE, np.max)):
         level = of(np.concatenate([values, np.full((1, 3), nothing)])[order].reshape(leaves, LEAF, 3), axis=1)
         levels = [level]
         while len(level) > 1:
