@@ -15,11 +15,14 @@ from ...surfels import Surfels
 from ...vectors import unit
 from ..scene import Scene
 from ..scene.material import SurfaceTexture
+from ..scene.polygons import Polygons
 from ..scene.scene import Placed
 
 #: Distance of points on large surfels and triangles; the most of a surfel's radius that one point stands for; both in
 #: cubes.
 _APART, _LARGEST = 0.6, 0.55
+#: Of a surfel's half-axes, how far points go: beyond are others.
+_COVERS = 0.75
 #: Points that are made at once, about.
 _AT_ONCE = 1 << 20
 #: What is less opaque than this lets all light through.
@@ -97,12 +100,12 @@ def points_of(scene: Scene, edge: float, solid: np.ndarray, choose) -> Iterator[
         if not len(rows):
             continue
         placed = table.every_kind[kind]
-        local = edge / float(table.stretches[rows, 0].max())
-        places = _places(placed, local)
+        largest = rows[table.stretches[rows, 0].argmax()]
+        places = _places(placed, table.matrices[largest, :3, :3], edge)
         if not (opaque := _are_opaque(placed, places)).all():
             places = places.taken(opaque)
         if len(rows) > 1:
-            places = _thinned(places, local)
+            places = _thinned(places, edge / float(table.stretches[largest, 0]))
         step = max(_AT_ONCE // max(len(places.positions), 1), 1)
         for first in range(0, len(rows), step):
             some = rows[first : first + step]
@@ -128,8 +131,10 @@ def _placed_points(
     return Points(positions[chosen], normals[chosen], albedo, emission, sets, have_backs)
 
 
-def _places(placed: Placed, edge: float) -> _Places:
-    return _of_surfels(placed.shape, edge) if isinstance(placed.shape, Surfels) else _of_triangles(placed.shape, edge)
+def _places(placed: Placed, linear: np.ndarray, edge: float) -> _Places:
+    """linear: (3, 3), of its largest instance."""
+    of_shape = _of_surfels if isinstance(placed.shape, Surfels) else _of_triangles
+    return of_shape(placed.shape, linear.T.astype(np.float32), edge)
 
 
 def _thinned(places: _Places, edge: float) -> _Places:
@@ -140,22 +145,27 @@ def _thinned(places: _Places, edge: float) -> _Places:
     return places.taken(np.unique(keys, axis=0, return_index=True)[1])
 
 
-def _of_surfels(surfels: Surfels, edge: float) -> _Places:
+def _of_surfels(surfels: Surfels, linear: np.ndarray, edge: float) -> _Places:
+    """linear: (3, 3) from rows in object units to the world's."""
     normals = np.ascontiguousarray(axes_columns(surfels.rotations, 2)[0].T)
-    every, is_large = np.arange(len(surfels)), surfels.radius > _LARGEST * edge
+    stretch = float(np.linalg.norm(linear, 2))
+    every, is_large = np.arange(len(surfels)), surfels.radius * stretch > _LARGEST * edge
     small = every[~is_large]
     parts = [(surfels.positions[small] if len(small) < len(every) else surfels.positions, small)]
     if is_large.any():
-        parts.append(_spread(surfels, every[is_large], _APART * edge))
+        parts.append(_spread(surfels, every[is_large], linear, _APART * edge))
     positions, rows = (np.concatenate(each) if len(parts) > 1 else each[0] for each in zip(*parts, strict=True))
     return _Places(positions, normals[rows], rows[:, None], np.ones((len(rows), 1), np.float32))
 
 
-def _spread(surfels: Surfels, large: np.ndarray, apart: float) -> tuple[np.ndarray, np.ndarray]:
+def _spread(surfels: Surfels, large: np.ndarray, linear: np.ndarray, apart: float) -> tuple[np.ndarray, np.ndarray]:
     """Positions on large surfels, and the surfel of each."""
-    counts = np.maximum(np.ceil(2 * surfels.scales[large] / apart), 1).astype(np.int64)
+    axes = [axis.T * scale[:, None] for axis, scale in zip(
+        axes_columns(surfels.rotations[large], 0, 1), surfels.scales[large].T, strict=True)]  # fmt: skip
+    lengths = np.stack([np.linalg.norm(axis @ linear, axis=1) for axis in axes], axis=1)
+    counts = np.maximum(np.ceil(2 * _COVERS * lengths / apart), 1).astype(np.int64)
     rows, (i, j) = _grids(counts)
-    at = (np.stack([i, j], axis=1) + 0.5) / counts[rows] * 2 - 1
+    at = ((np.stack([i, j], axis=1) + 0.5) / counts[rows] * 2 - 1) * _COVERS
     own = large[rows]
     is_kept = (at**2).sum(axis=1) <= 1
     packed = [np.asarray(field) for field in (getattr(surfels, name) for name in CLIP_FIELDS) if field is not None]
@@ -164,9 +174,8 @@ def _spread(surfels: Surfels, large: np.ndarray, apart: float) -> tuple[np.ndarr
         lines = np.stack([*lines, *lines][:2], axis=1)
         reflex = are_reflex(*(one[own] for one in packed)) if len(packed) == 2 else np.zeros(len(own), bool)
         is_kept &= kept(at, lines, reflex)
-    at, own = at[is_kept].astype(np.float32) * surfels.scales[own[is_kept]], own[is_kept]
-    x, y = (axis.T for axis in axes_columns(surfels.rotations[own], 0, 1))
-    return surfels.positions[own] + x * at[:, :1] + y * at[:, 1:], own
+    at, rows, own = at[is_kept].astype(np.float32), rows[is_kept], own[is_kept]
+    return surfels.positions[own] + axes[0][rows] * at[:, :1] + axes[1][rows] * at[:, 1:], own
 
 
 def _grids(counts: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray]]:
@@ -177,10 +186,10 @@ def _grids(counts: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray
     return rows, np.divmod(number, counts[rows, 1])
 
 
-def _of_triangles(polygons, edge: float) -> _Places:
+def _of_triangles(polygons: Polygons, linear: np.ndarray, edge: float) -> _Places:
     """Points in even steps along the two shorter sides of each triangle, up to the third."""
     corners = polygons.positions.reshape(-1, 3, 3)
-    sides = np.linalg.norm(corners[:, [1, 2, 0]] - corners[:, [2, 0, 1]], axis=2)  # opposite to each corner
+    sides = np.linalg.norm((corners[:, [1, 2, 0]] - corners[:, [2, 0, 1]]) @ linear, axis=2)  # opposite to each corner
     with np.errstate(invalid="ignore", divide="ignore"):
         normals = unit(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
     usable = np.flatnonzero(np.isfinite(normals).all(axis=1))
