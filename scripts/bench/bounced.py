@@ -2,8 +2,9 @@
 """Scenes of bounced light beside Cycles: a Cornell box, a room lit through its window, a courtyard under sun and sky.
 
 *PSNR* and *FLIP* are those of the whole picture, sRGB, clamped above white. Meshes are drawn as polygons, or converted
-with `--surfels`; Cycles takes the same meshes, and its noise is removed. Times are of all processors: *setup* is what the
-first picture takes longer than the next, and *frame* that over one without bounced light. The figures show ours, Cycles and four times the difference.
+with `--surfels`; Cycles takes the same meshes, and its noise is removed. Times are of all processors: *setup* is what
+the first picture takes longer than the next, and *frame* that over one without bounced light. The figures show ours,
+Cycles and four times the difference.
 """
 
 from __future__ import annotations
