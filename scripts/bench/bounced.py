@@ -84,7 +84,7 @@ def convert(resolution: int) -> None:
     for one in [o for o in bpy.context.scene.objects if o.type == "MESH"]:
         bpy.context.view_layer.objects.active = one
         one.select_set(True)
-        bpy.ops.surfels.convert(resolution=resolution)
+        bpy.ops.object.surfels_from_mesh(resolution=resolution)
         one.select_set(False)
 
 
