@@ -61,11 +61,15 @@ def cuts_holes(shader: Shader | None) -> bool:
     return any(_shows_an_image(socket) for socket in sockets)
 
 
+#: Operations of Math nodes whose result is 0 or 1.
+_TESTS = frozenset({"GREATER_THAN", "LESS_THAN", "COMPARE", "ROUND"})
+
+
 def _shows_an_image(socket) -> bool:
-    """Whether an image feeds a socket, also through Math nodes, which make an alpha test of it."""
+    """Whether an image feeds a socket, also through nodes that make an alpha test of it."""
     for _ in range(MAX_CHAIN):
         node, _output = linked(socket) or (None, "")
-        if node is None or node.bl_idname != "ShaderNodeMath":
+        if node is None or node.bl_idname != "ShaderNodeMath" or node.operation not in _TESTS:
             return node is not None and node.bl_idname == "ShaderNodeTexImage"
         socket = next((own for own in node.inputs if own.is_linked), node.inputs[0])
     return False
