@@ -23,6 +23,8 @@ from ..scene.scene import Placed
 _APART, _LARGEST = 0.6, 0.55
 #: Of a surfel's half-axes, how far points go: beyond are others.
 _COVERS = 0.75
+#: Points of one shape, about.
+_MOST_POINTS = 1 << 22
 #: Points that are made at once, about.
 _AT_ONCE = 1 << 20
 #: What is less opaque than this lets all light through.
@@ -163,7 +165,7 @@ def _spread(surfels: Surfels, large: np.ndarray, linear: np.ndarray, apart: floa
     axes = [axis.T * scale[:, None] for axis, scale in zip(
         axes_columns(surfels.rotations[large], 0, 1), surfels.scales[large].T, strict=True)]  # fmt: skip
     lengths = np.stack([np.linalg.norm(axis @ linear, axis=1) for axis in axes], axis=1)
-    counts = np.maximum(np.ceil(2 * _COVERS * lengths / apart), 1).astype(np.int64)
+    counts = _counts(2 * _COVERS * lengths / apart)
     rows, (i, j) = _grids(counts)
     at = ((np.stack([i, j], axis=1) + 0.5) / counts[rows] * 2 - 1) * _COVERS
     own = large[rows]
@@ -176,6 +178,14 @@ def _spread(surfels: Surfels, large: np.ndarray, linear: np.ndarray, apart: floa
         is_kept &= kept(at, lines, reflex)
     at, rows, own = at[is_kept].astype(np.float32), rows[is_kept], own[is_kept]
     return surfels.positions[own] + axes[0][rows] * at[:, :1] + axes[1][rows] * at[:, 1:], own
+
+
+def _counts(wanted: np.ndarray) -> np.ndarray:
+    """(n, 2) whole numbers of points along two sides. What lies over one another so often that there would be too many
+    points in all has fewer."""
+    counts = np.maximum(np.ceil(wanted), 1)
+    too_many = np.sqrt(counts.prod(axis=1).sum() / _MOST_POINTS)
+    return (np.maximum(np.ceil(wanted / too_many), 1) if too_many > 1 else counts).astype(np.int64)
 
 
 def _grids(counts: np.ndarray) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray]]:
@@ -197,7 +207,7 @@ def _of_triangles(polygons: Polygons, linear: np.ndarray, edge: float) -> _Place
     ends = (apex + 1) % 3, (apex + 2) % 3
     # the side to one end lies opposite to the other
     lengths = np.stack([sides[usable, ends[1]], sides[usable, ends[0]]], axis=1)
-    counts = np.maximum(np.ceil(lengths / (_APART * edge)), 1).astype(np.int64)
+    counts = _counts(lengths / (_APART * edge))
     rows, places = _grids(counts)
     u, v = ((k + 0.5).astype(np.float32) / counts[rows, j].astype(np.float32) for j, k in enumerate(places))
     room = 1 - v

@@ -12,6 +12,8 @@ from ..scene.polygons import Polygons
 _MIXING = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], np.uint64)
 _TWO_WAYS = np.array([0xFF51AFD7ED558CCD, 0xC4CEB9FE1A85EC53], np.uint64)
 _FOLD = np.uint64(31)
+#: Of so many instances, the largest ones, it is looked whether others are inside of them.
+_MOST_ROOMS = 256
 
 
 def are_solid(scene: Scene, eye: np.ndarray) -> np.ndarray:
@@ -22,10 +24,12 @@ def are_solid(scene: Scene, eye: np.ndarray) -> np.ndarray:
     corners = table.world_corners
     low, high = corners.min(axis=1), corners.max(axis=1)
     places = np.array([eye, *(light.position for light in scene.lights if light.kind != "sun")], np.float64)
-    for row in np.flatnonzero(closed).tolist():
-        holds = ((places > low[row]) & (places < high[row])).all(axis=1).any()
-        inside = (low > low[row]).all(axis=1) & (high < high[row]).all(axis=1)
-        closed[row] = not (holds or inside.any())
+    for place in places:
+        closed &= ~((place > low) & (place < high)).all(axis=1)
+    rows = np.flatnonzero(closed)
+    largest = np.argsort(-(high - low)[rows].max(axis=1), kind="stable")[:_MOST_ROOMS]
+    for row in rows[largest].tolist():
+        closed[row] = not ((low > low[row]).all(axis=1) & (high < high[row]).all(axis=1)).any()
     return closed
 
 
