@@ -13,6 +13,7 @@ import os
 import struct
 from collections.abc import Iterator
 from dataclasses import replace
+from operator import index
 from pathlib import Path
 from urllib.parse import unquote
 
@@ -122,12 +123,12 @@ class _File:
     def values(self, number: int, columns: int) -> np.ndarray:
         """(N, columns) float64 of an accessor; integers are shares of the largest."""
         accessor = self.json["accessors"][number]
-        kind, count = np.dtype(_TYPES[accessor["componentType"]]), int(accessor["count"])
+        kind, count = np.dtype(_TYPES[accessor["componentType"]]), index(accessor["count"])
         if _COUNTS.get(accessor["type"]) != columns or "sparse" in accessor or count < 0:
             raise ValueError(f"An accessor of the glTF file has the type {accessor['type']!r}, or only some values.")
         data, stride = self.view(accessor["bufferView"])
-        start, row = int(accessor.get("byteOffset", 0)), kind.itemsize * columns
-        stride = int(stride or row)
+        start, row = index(accessor.get("byteOffset", 0)), kind.itemsize * columns
+        stride = index(stride or row)
         if start < 0 or stride < row or (count and start + (count - 1) * stride + row > len(data)):
             raise ValueError("An accessor of the glTF file is outside its view; the file is cut off or damaged.")
         values = np.ndarray((count, columns), kind, data, start, (stride, kind.itemsize)).astype(np.float64)

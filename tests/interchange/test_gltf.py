@@ -109,6 +109,7 @@ def test_spz_inside_is_spz(tmp_path):
     ("change", "sentence"),
     [
         (lambda d: d["accessors"][0].update(count=10**12), "outside its view"),
+        (lambda d: d["accessors"][0].update(count="many"), "in another form"),
         (lambda d: d["bufferViews"][0].update(byteLength=10**9), "outside its buffer"),
         (lambda d: d["nodes"][0].update(children=[0]), "parents"),
         (lambda d: d["meshes"][0]["primitives"][0]["extensions"].clear(), "shows no Gaussian splats"),
