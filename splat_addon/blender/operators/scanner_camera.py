@@ -48,7 +48,8 @@ flight. At a single place it turns around once"""
     @classmethod
     def poll(cls, context):
         owner = context.active_object
-        if owner is not None and is_surfel_object(owner) and len(scanner_path_of(owner.data)):
+        is_there = owner is not None and is_surfel_object(owner) and len(owner.data.vertices)
+        if is_there and len(scanner_path_of(owner.data)):
             return True
         cls.poll_message_set(said("Select the surfels of a scan whose file tells where the scanner was"))
         return False

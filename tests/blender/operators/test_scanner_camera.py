@@ -88,7 +88,11 @@ def test_a_flight_is_estimated_and_looks_at_the_scan(tmp_path):
         assert np.abs(towards - to_middle).max() < 0.05
 
 
-def test_scans_whose_file_tells_no_place_have_none(tmp_path):
+def test_scans_whose_file_tells_no_place_or_that_are_empty_have_none(tmp_path):
+    read_ptx(tmp_path / "room", CORNER[None])
+    assert bpy.ops.object.surfels_scanner_camera.poll()
+    bpy.context.object.data.clear_geometry()
+    assert not bpy.ops.object.surfels_scanner_camera.poll()
     (tmp_path / "bare.xyz").write_text("".join(f"{x} {y} 0\n" for x in range(9) for y in range(9)))
     bpy.ops.import_scene.surfels_ply(filepath=str(tmp_path / "bare.xyz"))
     assert not bpy.ops.object.surfels_scanner_camera.poll()
