@@ -22,10 +22,10 @@ class Bounced:
     """The last scene's bounced light, or a draft of it."""
 
     def __init__(self):
-        self._kept: tuple[tuple, BouncedLight | None] | None = None
+        self._kept: tuple[tuple, BouncedLight] | None = None
         self._is_draft = False
 
-    def of(self, scene: Scene, eye: np.ndarray, bounces: int, is_draft: bool = False) -> BouncedLight | None:
+    def of(self, scene: Scene, eye: np.ndarray, bounces: int, is_draft: bool = False) -> BouncedLight:
         """The same object as long as the scene is, and the eye, (3,) world, is in the same rooms. is_draft: whether a
         draft serves, for the first picture of a view."""
         solid = are_solid(scene, eye)

@@ -52,15 +52,17 @@ def bounced_light(
     rays: int = RAYS,
     voxels: int = MOST_VOXELS,
     surfels: int = MOST_SURFELS,
-) -> BouncedLight | None:
-    """The light that the scene's surfaces send to one another; None if it has none. Lamps light them, with shadows.
+) -> BouncedLight:
+    """The light that the scene's surfaces send to one another; of no cells if it has none. Lamps light them, with
+    shadows.
 
     solid: (n,) bool, as of `are_solid`. bounces: how often light is reflected. rays: in all. voxels, surfels: how
     finely space and surfaces are divided.
     """
     surfaces = surfaces_of(scene, solid, voxels, surfels)
     if surfaces is None:
-        return None
+        none = np.zeros((0, 3))
+        return BouncedLight(np.zeros(3), 1.0, none.astype(int), np.zeros(0, int), none, np.zeros(0))
     seen = seen_from(surfaces, sky_of(scene), rays)
     light = bounced(surfaces, seen, lit_by_lamps(surfaces, scene.lights), bounces)
     smooth = smoother(surfaces, seen)

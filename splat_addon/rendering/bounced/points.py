@@ -120,7 +120,9 @@ def _placed_points(
     """The points of instances with these (m, 4, 4) matrices."""
     linear, count = matrices[:, :3, :3], max(len(places.positions), 1)
     shift = linear @ np.asarray(placed.shape.origin) + matrices[:, :3, 3]
-    turned = np.linalg.inv(linear) * np.sign(np.linalg.det(linear))[:, None, None]
+    scaled = linear / np.abs(linear).max(axis=(1, 2), keepdims=True)  # products of tiny numbers would vanish
+    turned = np.linalg.inv(scaled) * np.sign(np.linalg.det(scaled))[:, None, None]
+    turned /= np.abs(turned).max(axis=(1, 2), keepdims=True)
     positions = np.matmul(places.positions, linear.swapaxes(1, 2).astype(np.float32)) + shift[:, None]
     normals = unit(np.matmul(places.normals, turned.astype(np.float32))).reshape(-1, 3)
     positions = positions.reshape(-1, 3)

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..scene.light import MAX_IRRADIANCE
 from .surfaces import SIDES
 
 #: Texels in a row of the texture.
@@ -40,7 +41,8 @@ def make_table(cells: np.ndarray, sides: np.ndarray, irradiance: np.ndarray, is_
     texels[place, :3], texels[place, 3] = every, 1 + np.arange(len(every))
     values = texels[slots:].reshape(-1, SIDES, 4)
     values[..., 3] = ABSENT
-    values[row.ravel(), sides] = np.concatenate([irradiance, is_open[:, None]], axis=1)
+    bounded = np.minimum(irradiance, MAX_IRRADIANCE)  # as lamps have it
+    values[row.ravel(), sides] = np.concatenate([bounded, is_open[:, None]], axis=1)
     rows = -(-len(texels) // PER_ROW)
     padded = np.zeros((rows * PER_ROW, 4), np.float32)
     padded[: len(texels)] = texels

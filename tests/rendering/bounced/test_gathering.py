@@ -99,7 +99,18 @@ def test_lamp_lights_what_nothing_hides(lamp):
 
 
 def test_scene_of_nothing_has_no_bounced_light():
-    assert bounced_light(Scene(), np.zeros(0, bool), 3) is None
+    found = bounced_light(Scene(), np.zeros(0, bool), 3)
+    assert len(found.cells) == 0 and np.isfinite(found.texels()).all()
+
+
+@pytest.mark.parametrize("scale", (1e-18, 1e-6))
+def test_light_is_the_same_at_any_scale(scale):
+    def at(size):
+        matrix = np.diag((size, size, size, 1.0))
+        scene = Scene(polygons=[replace(cube(), matrix_world=matrix)], world=(1.0, 1, 1))
+        return gathered(scene, 1)[0]
+
+    assert at(scale) == pytest.approx(at(1.0), abs=0.1)
 
 
 def cube(place=(0.0, 0, 0), half=1.0, faces=FACES):
