@@ -4,8 +4,8 @@
 Scenes and settings are those of `tests/rendering/random_pictures.py`: all that the renderer supports, also in crowded
 combinations. Each is drawn as it is and changed; the changes leave the exact picture as it is. Numbers round
 differently, shadow maps have their texels elsewhere, and surfaces in one place come in another order. *Differing*
-pixels are apart by more than 0.05 in sRGB; *cover* is the difference between the means of the coverage. A sky does not
-turn with a scene, so scenes that have one are not turned.
+pixels are apart by more than 0.05 in sRGB; *cover* is the difference between the means of the coverage. Not turned are
+scenes with a sky, which stays, and normals as colours; not scaled are sprites as printed, whose depths have no unit.
 """
 
 from __future__ import annotations
@@ -108,7 +108,9 @@ def moved_by(scale: float = 1.0, turn: float = 0.0, offset=(0.0, 0.0, 0.0)):
         return replace(each, matrix_world=matrix @ each.matrix_world, split_distance=split)
 
     def change(scene, camera, settings):
-        if turn and scene.environment is not None:
+        if turn and (scene.environment is not None or settings.shading == "normals"):
+            return None
+        if scale != 1 and settings.method == "sprites_printed":
             return None
         parts = {"surfels": placed, "polygons": placed, "lights": light}
         scene = replace(scene, **{name: tuple(map(of, getattr(scene, name))) for name, of in parts.items()})
