@@ -22,8 +22,13 @@ ALLOWED = {
     "scripts/bench/fuzz/scan_formats.py": {"write_bytes": "scratch in a temporary folder"},
     "scripts/bench/fuzz_scenes/__init__.py": {"open": "what workers print, while they do"},
     "scripts/bench/fuzz_scenes/worker.py": {"fdopen": "a pipe"},
+    "scripts/bench/large_scans.py": {
+        "open": "its own file, in the folder of its results",
+        "unlink": "its own file, before the next measurement",
+    },
     "scripts/bench/leaves.py": {"save": "to the stream of `whole_file`"},
     "scripts/bench/reflecting/__init__.py": {"save": "to the stream of `whole_file`"},
+    "scripts/bench/scanned/others.py": {"savez": "scratch in a temporary folder"},
     "scripts/bench/streaming.py": {"unlink": "its own file, after the last measurement"},
     "scripts/build.py": {
         "ZipFile": "scratch in a temporary folder",
@@ -57,6 +62,7 @@ ALLOWED = {
         "replace": "into the folder of `unfinished`",
         "unlink": "what a failed save left",
     },
+    "splat_addon/blender/materials/image_files.py": {"save": "scratch in a temporary folder"},
     "splat_addon/claims.py": {
         "open": "a lock without contents",
         "unlink": "the lock, and what dead processes left",
@@ -69,6 +75,7 @@ ALLOWED = {
         "open": "scratch in the folder of `unfinished`",
         "unlink": "scratch in the folder of `unfinished`",
     },
+    "splat_addon/streaming/point_files.py": {"open": "scratch in the folder of `unfinished`"},
     "splat_addon/streaming/writing.py": {"open": "in the folder of `unfinished`"},
     "splat_addon/whole_files.py": {"open": "the place", "replace": "the place", "rmtree": "its own folder"},
 }
