@@ -99,13 +99,22 @@ def _ended(met: Meetings, scales: np.ndarray, times: int) -> list[Clipping]:
         return []
     ends, (_, starts, owner) = _ends_in_circle(met), _groups(met.surfel)
     lines, sticks_out = _lines(met, ends, starts, owner)
+    smaller = []
     if times and sticks_out.any():
-        parts = [met.take(np.flatnonzero(some)) for some in (~sticks_out.take(owner), sticks_out.take(owner))]
-        return [*_ended(parts[0], scales, 0), *_ended(made_smaller(parts[1], scales), scales, times - 1)]
+        changes = sticks_out.take(owner)
+        smaller = _ended(made_smaller(met.take(np.flatnonzero(changes)), scales), scales, times - 1)
+        met, stays = met.take(np.flatnonzero(~changes)), np.flatnonzero(~sticks_out)
+        # The others' lines do not depend on them.
+        lines, (_, starts, owner) = lines.take(stays, axis=2), _groups(met.surfel)
+    return [_packed(met, lines, starts, owner), *smaller] if len(met) else smaller
+
+
+def _packed(met: Meetings, lines: np.ndarray, starts: np.ndarray, owner: np.ndarray) -> Clipping:
+    """lines: (2, 3, n) of the n surfels. starts, owner: from `_groups` of the meetings' surfels."""
     packed = np.stack([pack_lines(line.T) for line in lines])
     packed[packed[..., 1] == 0] = 0
     reflex = are_reflex(*packed)
-    return [Clipping(met.surfel.take(starts), packed, met, lines.take(owner, axis=2), reflex.take(owner))]
+    return Clipping(met.surfel.take(starts), packed, met, lines.take(owner, axis=2), reflex.take(owner))
 
 
 def clip_fields(parts: Iterable[Clipping], count: int) -> SampleTable:
