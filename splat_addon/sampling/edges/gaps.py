@@ -96,8 +96,9 @@ class BorderPlaces:
         share = np.minimum(_ENDS, _TO_END * grid.spacing / np.maximum(length, 1e-300))[:, None]
         ends = borders.start + along * share, borders.end - along * share
         self._ends = [place + (borders.opposite - place) * part for place in ends]
-        seen = ((end - grid.surfel_origin).T / grid.spacing for end in self._ends)
-        self._seen = [np.ascontiguousarray(end, np.float32) for end in seen]
+        seen = (np.stack(self._ends) - grid.surfel_origin) / grid.spacing
+        # by coordinate, both ends of each row
+        self._seen = np.ascontiguousarray(np.moveaxis(seen, 2, 0), np.float32)
         self._changes = np.zeros(int(self._counts.sum()) + 1, np.int64)
 
     def cover(self, clipping: Clipping):
@@ -105,7 +106,7 @@ class BorderPlaces:
         reflex corner, one stretch for each line."""
         met = clipping.met
         across, up = ((met.seen.axis + k) % 3 for k in (1, 2))
-        start, end = (met.seen.in_circles(met.number, *(e[k].take(met.side) for k in (across, up))) for e in self._seen)
+        start, end = met.seen.in_circles(met.number, *(self._seen[k].take(met.side, axis=1) for k in (across, up)))
         way = end - start
         a, b, c = (way * way).sum(axis=0), (start * way).sum(axis=0), (start * start).sum(axis=0) - np.float32(_COVERED)
         root = b * b - a * c

@@ -96,7 +96,8 @@ def _in_image(
     """Yields jobs for the surfels that an image sees, with the sides that it sees. faces: number of each side."""
     positions, scales, rotations = (arrays[name][rows] for name in ("positions", "scales", "rotations"))
     # The smaller half-axis lies across the image's axis, the larger one is foreshortened to it.
-    reach = float((scales[:, 1] if isinstance(rows, slice) else scales).max(initial=0)) / grid.spacing
+    reaches = scales[:, 1] if isinstance(rows, slice) else _reaches(scales, rotations, axis)
+    reach = float(reaches.max(initial=0)) / grid.spacing
     search = reach if at_centres else reach + _OFF_CENTRE
     rises = -normals[:2] / normals[2]
     planes = np.stack([*rises, ends[0, 2] - (ends[0, :2] * rises).sum(axis=0)])
@@ -126,7 +127,7 @@ def _met(
     facing = sum(n.take(side) * own.take(surfel) for n, own in zip(normals, seen.normal, strict=True))
     alike = np.flatnonzero(np.abs(facing) >= _SAME_PIECE)
     surfel, side, facing, off = (values.take(alike) for values in (surfel, side, facing, off))
-    start, end = (seen.in_circles(surfel, *(of.take(side) for of in e)) for e in ends)
+    start, end = seen.in_circles(surfel, *(of.take(side, axis=1) for of in ends.swapaxes(0, 1)))
     # The face lies at the left of its edge where it is seen from the side that its normal points to.
     turned = facing < 0
     _swap(start, end, turned)
@@ -161,10 +162,21 @@ class SeenSurfels:
         self.size = np.maximum(*scales)
 
     def in_circles(self, surfel: np.ndarray, u: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """(2, m) (m,) places across and up in the image, in the half-axes of the (m,) surfels."""
+        """(k, 2, m) (k, m) places across and up in the image, in the half-axes of the (m,) surfels."""
         u, v = u - self.place[0].take(surfel), v - self.place[1].take(surfel)
         a, b, c, d = (row.take(surfel) for row in self.inverse)
-        return np.stack([a * u + b * v, c * u + d * v])
+        places = np.empty((len(u), 2, len(surfel)), np.float32)
+        np.add(a * u, b * v, out=places[:, 0])
+        np.add(c * u, d * v, out=places[:, 1])
+        return places
+
+
+def _reaches(scales: np.ndarray, rotations: np.ndarray, axis: int) -> np.ndarray:
+    """(n,) how far the ellipses reach from their centres, seen along an axis, object units."""
+    order = [(axis + k) % 3 for k in (1, 2)]
+    (a, b), (c, d) = (of[order] * size for of, size in zip(axes_columns(rotations, 0, 1), scales.T, strict=True))
+    # the larger singular value
+    return (np.hypot(a + d, b - c) + np.hypot(a - d, b + c)) / 2
 
 
 def _swap(one: np.ndarray, other: np.ndarray, where: np.ndarray) -> None:
