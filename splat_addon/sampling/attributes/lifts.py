@@ -10,9 +10,12 @@ are never moved into the surface.
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
-from ..mesh.triangle_mesh import TriangleMesh, triangle_chunks
+from ...workers import run_all
+from ..mesh.triangle_mesh import TriangleMesh, gather_corners, triangle_chunks
 
 #: Lifts below this many spacings are not stored: shadow maps hold splats that much farther back.
 LEAST_LIFT = 0.1
@@ -28,15 +31,19 @@ def edge_bulges(mesh: TriangleMesh, spacing: float) -> np.ndarray | None:
     if mesh.corner_normals is None:
         return None
     bulges = np.empty((3, len(mesh)), np.float32)
-    for some in triangle_chunks(len(mesh)):
-        corners, normals = mesh.positions[mesh.triangles[some]], mesh.corner_normals[some].astype(np.float64)
+
+    def fill(some: slice):
+        corners = gather_corners(mesh.positions.T, mesh.triangles[some])
+        normals = mesh.corner_normals[some].transpose(2, 1, 0).astype(np.float64, order="C")
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-            normals /= np.linalg.norm(normals, axis=2, keepdims=True)
+            normals /= np.linalg.norm(normals, axis=0)
             for start, row in enumerate(bulges):
                 end = (start + 1) % 3
                 edge = corners[:, end] - corners[:, start]
-                ends = (np.einsum("ij,ij->i", sign * edge, normals[:, k]) for sign, k in ((-1, start), (1, end)))
-                row[some] = np.nan_to_num(sum(np.maximum(below, 0) for below in ends), posinf=0)
+                below = np.maximum(-_dots(edge, normals[:, start]), 0) + np.maximum(_dots(edge, normals[:, end]), 0)
+                row[some] = np.nan_to_num(below, posinf=0)
+
+    run_all(partial(fill, some) for some in triangle_chunks(len(mesh)))
     return bulges if MOST_LIFT * bulges.max(initial=0) > LEAST_LIFT * spacing else None
 
 
@@ -47,3 +54,8 @@ def lifts(shares: np.ndarray, bulges: np.ndarray) -> np.ndarray:
         lifted += shares[k] * shares[(k + 1) % 3] * bulges[k]
     # weights on an edge are rounded to either side of 0
     return np.maximum(lifted, 0, out=lifted)
+
+
+def _dots(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """(t,) dot products of (3, t) vectors, with their terms in the order in which numpy adds those of rows."""
+    return a[0] * b[0] + a[2] * b[2] + a[1] * b[1]
