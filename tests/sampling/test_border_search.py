@@ -4,9 +4,11 @@
 import numpy as np
 import pytest
 
+from splat_addon.quaternions import quaternion_axes
 from splat_addon.sampling import Channel, Surface, TriangleMesh, VertexColors, drop_unusable
 from splat_addon.sampling.edges import image_neighbours as search
 from splat_addon.sampling.edges.borders import survey_edges
+from splat_addon.sampling.edges.meetings import _reaches
 from splat_addon.sampling.ldc.grid import make_grid
 
 
@@ -203,3 +205,16 @@ def test_no_edge_near_one_of_few_surfels_is_left_out(length):
     # a surfel is up to half a cell from the centre of its cell
     assert set(np.flatnonzero(distance < reach + 0.5)) <= set(found.tolist())
     assert (len(found) < 2000) == (length < 10)
+
+
+@pytest.mark.parametrize("axis", range(3))
+def test_an_ellipse_reaches_as_far_as_the_farthest_point_of_its_rim(axis):
+    random = np.random.default_rng(axis)
+    rotations = random.normal(size=(50, 4))
+    rotations /= np.linalg.norm(rotations, axis=1, keepdims=True)
+    scales = random.uniform(0.1, 2, (50, 2))
+    x, y, _ = quaternion_axes(rotations, 2)
+    angles = np.linspace(0, np.pi, 2000)[:, None, None]
+    rim = np.cos(angles) * x * scales[:, :1] + np.sin(angles) * y * scales[:, 1:]
+    farthest = np.linalg.norm(np.delete(rim, axis, axis=2), axis=2).max(axis=0)
+    np.testing.assert_allclose(_reaches(scales, rotations, axis), farthest, rtol=1e-5)
