@@ -10,12 +10,12 @@ from __future__ import annotations
 import base64
 import json
 import os
+import re
 import struct
 from collections.abc import Iterator
 from dataclasses import replace
 from operator import index
 from pathlib import Path
-from urllib.parse import unquote
 
 import numpy as np
 
@@ -107,7 +107,7 @@ class _File:
             elif uri.startswith("data:"):
                 self._buffers[number] = _decoded(uri.partition(",")[2])
             else:
-                self._buffers[number] = self._beside(unquote(uri))
+                self._buffers[number] = self._beside(_unescaped(uri))
         return self._buffers[number]
 
     def _beside(self, name: str) -> bytes:
@@ -133,6 +133,12 @@ class _File:
             raise ValueError("An accessor of the glTF file is outside its view; the file is cut off or damaged.")
         values = np.ndarray((count, columns), kind, data, start, (stride, kind.itemsize)).astype(np.float64)
         return values if kind.kind == "f" else np.maximum(values / np.iinfo(kind).max, -1)
+
+
+def _unescaped(uri: str) -> str:
+    """A URI with its %20 and the like as letters."""
+    code = re.sub(rb"%([0-9A-Fa-f]{2})", lambda found: bytes([int(found[1], 16)]), uri.encode("utf-8"))
+    return code.decode("utf-8", "replace")
 
 
 def _decoded(text: str) -> bytes:

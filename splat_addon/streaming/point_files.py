@@ -112,9 +112,8 @@ class PointFiles:
         return {name: rows[name] for name in self._kind.names}, len(own)
 
     def _pieces_of(self, file: _File) -> Iterable[np.ndarray]:
-        rows = np.memmap(file.path, self._kind, "r")
-        for first in range(0, len(rows), _ROWS):
-            yield rows[first : first + _ROWS]
+        for first in range(0, file.count, _ROWS):
+            yield np.fromfile(file.path, self._kind, _ROWS, offset=first * self._kind.itemsize)
 
 
 def _reach(positions: np.ndarray, neighbours: int) -> float:

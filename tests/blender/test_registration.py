@@ -83,7 +83,7 @@ def left() -> dict:
 def test_unregistering_takes_everything_away_and_registering_brings_it_back():
     before = left()
     assert all(before[name] for name in ("handlers", "menu_entries", "classes", "properties", "joined_panels"))
-    assert before["manual_pages"] and len(handlers()) == 20
+    assert before["manual_pages"] and len(handlers()) == 21
     assert not key_map_items(), "the add-on has no key map, so as to take nobody's keys"
     for _ in range(3):
         splat_addon.unregister()

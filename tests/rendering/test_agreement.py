@@ -461,6 +461,9 @@ def named(name: str, method: str, options: dict) -> str:
     )
 
 
+#: Surfaces of glass that a ray may cross, at the rim of each of which it may fall either way.
+CROSSINGS = 10
+
 USUAL = {"supersampling": 1, "shadow_resolution": 256}
 SHOTS = {
     named(*case): lambda case=case: (*MAKERS[case[0]](), Settings(method=case[1], **USUAL | case[2])) for case in CASES
@@ -485,6 +488,8 @@ def test_picture_is_the_same_on_every_device(name, render, on_both_devices):
         samples = (
             SURFACES if has_layers else SPRITES if described.hides_within == "sprite" else 1
         )  # each of them may tie
+        if settings.refraction:
+            samples *= CROSSINGS
         for array in here.keys() - {"layers"}:
             differs = are_apart(array, here, standalone, settings, has_layers)
             if array in ("color", "normal") and filters:

@@ -45,6 +45,11 @@ def measured(scene: bpy.types.Scene) -> Measured | None:
     return _measured.get(scene.name)
 
 
+def forget_measurements() -> None:
+    """Forget what was measured in all scenes."""
+    _measured.clear()
+
+
 class Measuring:
     """Draws the first picture of a render with all choices, and every picture as set. Call it with a `Drawing`.
 

@@ -15,7 +15,7 @@ from ...trade.page import magma
 from ...whole_files import write_whole
 from ..doors import register_classes_factory, unattended, with_handlers
 from ..engine.final_render import exchange, exchanging
-from ..engine.measuring import Measuring, measured
+from ..engine.measuring import Measuring, forget_measurements, measured
 from ..ids import ENGINE, MEASURE, RENDER_SETTINGS, SAVE_MEASURED, SHOW_DIFFERENCE, USE_MEASURED
 from ..spoken import said
 from .file_paths import absolute, file_sentence, path_property
@@ -97,6 +97,12 @@ def _after_render(*_) -> None:
     if _is_begun:
         _is_begun = False
         exchange()
+
+
+@unattended("Forgetting measurements")
+def _after_load(*_) -> None:
+    """Another file's scenes may have the names of those that were measured."""
+    forget_measurements()
 
 
 class _OfRow:
@@ -201,7 +207,9 @@ _classes = register_classes_factory(
     )
 )
 _handlers = with_handlers(
-    (bpy.app.handlers.render_complete, _after_render), (bpy.app.handlers.render_cancel, _after_render)
+    (bpy.app.handlers.render_complete, _after_render),
+    (bpy.app.handlers.render_cancel, _after_render),
+    (bpy.app.handlers.load_post, _after_load),
 )
 
 

@@ -58,6 +58,12 @@ def test_a_table_is_measured_and_a_row_used(sheet, scene, tmp_path):
     assert "Final, 3 x 3" in (tmp_path / "page.html").read_text(encoding="utf-8")
 
 
+def test_another_file_has_no_table(sheet, scene):
+    bpy.ops.render.surfel_measure(pictures=8)
+    bpy.ops.wm.read_homefile(use_empty=True)
+    assert bpy.context.scene.name == "Scene" and measuring.measured(bpy.context.scene) is None
+
+
 def test_a_cancelled_measurement_goes_on(sheet, scene, monkeypatch):
     """What was measured is kept, and only the rest is drawn."""
     whole, drawn = measuring.measure, []
