@@ -32,11 +32,12 @@ def use_choice(scene: bpy.types.Scene, choice: Choice) -> None:
 
 
 class RENDER_OT_surfel_measure(bpy.types.Operator):
-    """Render the scene with many settings and compare each picture with the exact one, for a table of what they cost
-    and gain. It takes as long as a hundred small renders; Esc ends it and keeps what was measured"""
-
     bl_idname = MEASURE
     bl_label = "Measure This Scene"
+    bl_description = (
+        "Render the scene with many settings and compare each picture with the exact one, for a table of what they "
+        "cost and gain. It takes as long as a hundred small renders; Esc ends it and keeps what was measured"
+    )
 
     pictures: IntProperty(
         name="Exact Pictures",

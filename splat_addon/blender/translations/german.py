@@ -25,7 +25,7 @@ GERMAN = {
     ),
     (
         "Render the scene with many settings and compare each picture with the exact one, for a table of what they "
-        "cost\nand gain. It takes as long as a hundred small renders; Esc ends it and keeps what was measured"
+        "cost and gain. It takes as long as a hundred small renders; Esc ends it and keeps what was measured"
     ): (
         "Die Szene mit vielen Einstellungen rendern und jedes Bild mit dem exakten vergleichen, für eine Tabelle "
         "dessen, was sie kosten und bringen. Es dauert so lange wie hundert kleine Rendervorgänge; Esc beendet es und "
