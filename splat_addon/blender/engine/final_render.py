@@ -156,6 +156,7 @@ def _picture(engine, depsgraph, resources: _Resources, settings, turn: tuple[int
     told, part = partial(_progress, engine, turn), rendered_part(scene.render)
     target = None if engine.is_preview else target_of(getattr(scene, RENDER_SETTINGS))
     begun, first = perf_counter(), None
+    resources.targets.promise = None
     if target or _exchange.drawn_by:
         first = exported, seen = read()
         drawing = Drawing(resources.renderer, exported, seen.cropped(*part) if part else seen, settings, told)

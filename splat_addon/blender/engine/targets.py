@@ -41,7 +41,7 @@ class Targets:
     """
 
     def __init__(self):
-        self._rows: list[Row] = []
+        self._rows: dict[tuple, list[Row]] = {}
         self._pace = Pace()
         self._begun = 0.0
         self.promise: Promise | None = None
@@ -49,10 +49,12 @@ class Targets:
     def settings_for(self, target: Target, drawing: Drawing, reading: float) -> Settings:
         """The settings that keep the target. reading: seconds that reading the scene took, which count. Raises as
         `measure`."""
-        if not self._rows:
-            self._rows = list(_measured(drawing))
+        # what else a scene that stays on the device may change is left to the correction
+        key = drawing.camera.size, drawing.settings.shading
+        if key not in self._rows:
+            self._rows[key] = list(_measured(drawing))
         left = target if target.seconds is None else Target(seconds=max(target.seconds - reading, 1e-3))
-        self.promise = chosen(self._rows, left, self._pace.factor)
+        self.promise = chosen(self._rows[key], left, self._pace.factor)
         self._begun = perf_counter()
         return self.promise.choice.of(drawing.settings)
 
