@@ -9,9 +9,8 @@ from dataclasses import dataclass, field, replace
 
 from ..rendering import PRESETS, FramePlan, Settings
 
-#: Samples that each way of filtering a pixel is tried with, for as long as it gains by more.
-BALANCED_SAMPLES = (1, 2, 4, 8, 16, 32)
-FINAL_SAMPLES = ((2, 1), (3, 1), (4, 1), (6, 1), (8, 1))
+#: Samples that each way of filtering a pixel is tried with; of the second, along each side of a pixel.
+BALANCED_SAMPLES, FINAL_EDGES = (1, 2, 4, 8, 16, 32), (2, 3, 4, 6, 8)
 
 #: The values of a number that are tried, if it has another.
 TOLERANCES, SHADOW_RESOLUTIONS, LAYERS = (0.0, 2.0, 4.0), (512, 2048), (2, 4, 8)
@@ -61,15 +60,17 @@ def _series() -> Iterator[Choice]:
     preview, balanced, final = (PRESETS[name] for name in ("preview", "balanced", "final"))
     yield Choice(preview.label, {**preview.values, "samples": 1})
     for samples in BALANCED_SAMPLES:
-        changes = {**balanced.values, "samples": samples}
-        yield Choice(f"{balanced.label}, {_counted(samples)}", changes, balanced.label)
-    for supersampling, samples in FINAL_SAMPLES:
-        changes = {**final.values, "supersampling": supersampling, "samples": samples}
-        yield Choice(f"{final.label}, {supersampling} x {supersampling}", changes, final.label)
+        yield with_samples(balanced.label, balanced.values, samples)
+    for edge in FINAL_EDGES:
+        yield with_samples(final.label, {**final.values, "samples": 1}, edge)
 
 
-def _counted(samples: int) -> str:
-    return "1 sample" if samples == 1 else f"{samples} samples"
+def with_samples(series: str, values: dict, number: int) -> Choice:
+    """A choice of a series. values: with a supersampling above 1 if `number` is along each side of a pixel."""
+    if values["supersampling"] > 1:
+        return Choice(f"{series}, {number} x {number}", {**values, "supersampling": number}, series)
+    counted = "1 sample" if number == 1 else f"{number} samples"
+    return Choice(f"{series}, {counted}", {**values, "samples": number}, series)
 
 
 def _numbers(settings: Settings, plan: FramePlan) -> Iterator[Choice]:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..rendering.settings import MAX_SAMPLES, MAX_SUPERSAMPLING
-from .choices import Choice
+from .choices import Choice, with_samples
 from .measuring import Row
 
 
@@ -146,11 +146,7 @@ def _numbered(name: str, like: Choice, most: float) -> Iterator[tuple[Choice, in
         samples = number**2 if by_edge else number
         if samples > most:
             return
-        if by_edge:
-            yield Choice(f"{name}, {number} x {number}", {**like.changes, "supersampling": number}, name), samples
-        else:
-            plural = "sample" if number == 1 else "samples"
-            yield Choice(f"{name}, {number} {plural}", {**like.changes, "samples": number}, name), samples
+        yield with_samples(name, like.changes, number), samples
 
 
 def _steps(most: int) -> Iterator[int]:

@@ -83,6 +83,8 @@ def test_only_what_the_scene_contains_is_tried(shot, on_device):
 
     without, with_shadow = on_device(lambda device: (names(device, scene), names(device, shadowed)))
     assert with_shadow - without == {"shadow_resolution"} and "layers" not in without
+    spheres = scenes.transparent_spheres(count=300, size=(16, 16))[0]
+    assert "layers" in on_device(lambda device: names(device, spheres))
 
 
 def row(choice, flip, seconds, filter="box"):
