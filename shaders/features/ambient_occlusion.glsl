@@ -28,9 +28,6 @@ const int OCCLUSION_SLICES = 2;
 // Minimum cosine to the viewer: a mean normal may face away although the surface is visible.
 const float LEAST_OCCLUSION_FACING = 0.2;
 const int OCCLUSION_STEPS = 8;
-// A distance of 0 is this share of the one to the viewer, or of the height of a parallel picture: whatever the scene's
-// scale, and things that are far in front leave no dark rim on what is behind them.
-const float OCCLUSION_SHARE = 0.5;
 
 struct Slice {
   vec2 along;   // in samples, unit
@@ -47,9 +44,10 @@ struct Search {
 // Cosine between the direction to the viewer and the highest horizon along a direction, at least `lowest`. Occluders
 // beyond half the distance fade out.
 float horizon_cosine(ivec2 texel, vec3 position, vec3 to_eye, Slice slice, Search search, float lowest) {
-  ivec2 size = textureSize(sample_depths, 0);
+  ivec2 low = ivec2(frame.occlusion_picture.xy), high = ivec2(frame.occlusion_picture.zw);
   // to the picture's edge along the slice: where a tap leaves the picture, the next row has one less, which shows
-  vec2 room = mix(vec2(texel), vec2(size - 1 - texel), step(vec2(0.0), slice.along)) / max(abs(slice.along), vec2(1e-6));
+  vec2 room = mix(vec2(texel - low), vec2(high - texel), step(vec2(0.0), slice.along));
+  room /= max(abs(slice.along), vec2(1e-6));
   float reach = min(search.reach, min(room.x, room.y));
   float highest = lowest, per_distance = 2.0 / search.distance;
   int last = 0;
@@ -57,7 +55,7 @@ float horizon_cosine(ivec2 texel, vec3 position, vec3 to_eye, Slice slice, Searc
     float share = (float(i) + search.phase) / float(OCCLUSION_STEPS);
     last = max(last + 1, int(share * share * reach + 0.5));
     ivec2 at = texel + ivec2(floor(slice.along * float(last) + 0.5));
-    if (any(greaterThanEqual(uvec2(at), uvec2(size)))) break;  // a negative value is a large unsigned one
+    if (at != clamp(at, low, high)) break;
     float depth = texelFetch(sample_depths, at, 0).r;
     if (!(depth > 0.0)) continue;
     vec3 toward = eye_position(at, depth) - position;
@@ -80,6 +78,7 @@ float open_share_at(ivec2 texel, vec3 position, vec3 normal) {
   vec3 to_eye = to_viewer(position);
   bool is_parallel = view.is_parallel > 0.5;
   float per_sample = view.window.z * (is_parallel ? 1.0 : -position.z), distance = frame.occlusion_distance;
+  // whatever the scene's scale, and things that are far in front leave no dark rim on what is behind them
   if (!(distance > 0.0)) distance = OCCLUSION_SHARE * (is_parallel ? per_sample * frame.occlusion_height : -position.z);
   float reach = min(distance / per_sample, frame.occlusion_reach);
   if (!(reach > 1.0)) return 1.0;
@@ -124,11 +123,11 @@ const float LEAST_OCCLUSION_WEIGHT = 1e-3;
 float open_share_around(ivec2 texel, vec3 position, vec3 normal) {
   float per_sample = view.window.z * (view.is_parallel > 0.5 ? 1.0 : -position.z);
   float per_offset = 1.0 / (OCCLUSION_PLANE * per_sample);
-  ivec2 last = textureSize(occlusion, 0) - 1;
+  ivec2 low = ivec2(frame.occlusion_picture.xy), high = ivec2(frame.occlusion_picture.zw);
   vec2 total = vec2(0.0);
   for (int y = -2; y < 2; y++) {
     for (int x = -2; x < 2; x++) {
-      ivec2 at = clamp(texel + ivec2(x, y), ivec2(0), last);
+      ivec2 at = clamp(texel + ivec2(x, y), low, high);
       vec2 open_depth = texelFetch(occlusion, at, 0).xy;
       if (!(open_depth.y > 0.0)) continue;
       float offset = abs(dot(normal, eye_position(at, open_depth.y) - position));

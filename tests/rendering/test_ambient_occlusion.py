@@ -221,3 +221,14 @@ def test_where_it_is_the_plan_says_so():
 def test_a_distance_that_is_none_is_refused(distance):
     with pytest.raises(ValueError, match="ambient_occlusion must be a distance of 0 or more"):
         Settings(ambient_occlusion=distance)
+
+
+@pytest.mark.parametrize("is_parallel", [True, False])
+def test_a_part_of_a_picture_sees_what_is_beside_it(is_parallel, render):
+    """The wall begins beside the first part."""
+    view = camera(is_parallel)
+    whole = render(scene(), view, SETTINGS)
+    for x, y, width, height in ((30, 5, 40, 9), (0, 0, 48, 12)):
+        part = render(scene(), view, SETTINGS, part=(x, y, width, height))
+        apart = np.abs(part.color - whole.color[y : y + height, x : x + width]).max()
+        assert apart < 1e-5 * SOOT, apart

@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from ..passes.textures import SAMPLE_DEPTHS
 from ..plan.graph import Part, Texture
 from ..plan.hosts import LIT_HOSTS, Host, Kind
@@ -14,6 +16,9 @@ from . import bounced_light, sample_depths
 
 #: Search distance for occluders in a picture that is drawn in tiles, as a fraction of a tile's edge.
 TILE_SHARE = 1 / 8
+
+#: An infinite distance as a share of that to the viewer, or of the height of a parallel picture.
+SHARE = 0.5
 
 #: Pixels beside a sample whose shares are its own's mean.
 FILTERED = 2
@@ -47,14 +52,40 @@ def missing(planning) -> str:
 
 def margin(planning) -> int:
     """Pixels read beside a tile; 0 if the whole picture is one tile."""
-    edge = tile_edge(planning)
-    is_tiled = planning.shown and max(planning.camera.size) > edge
-    return int(TILE_SHARE * edge) if is_tiled and not planning.find(missing) else 0
+    return planning.find(beside)[0]
 
 
-def height(planning) -> int:
+def beside(planning) -> tuple[int, int]:
+    """Pixels drawn beside a tile, and how far occluders are looked for, in pixels. Beside a part of a picture, no more
+    are drawn than it is long."""
+    whole, (left, bottom, *size) = planning.camera.size, planning.part
+    edge, room = tile_edge(planning), max(left, bottom, whole[0] - left - size[0], whole[1] - bottom - size[1])
+    is_tiled = max(size) > edge
+    if not planning.shown or not (is_tiled or room) or planning.find(missing):
+        return 0, max(whole)
+    most = int(TILE_SHARE * edge)
+    if is_tiled:
+        return most, most - FILTERED
+    wanted = min(room, math.ceil(_pixels(planning)))
+    drawn = min(wanted, most - FILTERED, max(size))
+    return drawn + FILTERED, drawn if drawn < wanted else max(whole)
+
+
+def _pixels(planning) -> float:
+    """How many pixels the distance spans at most."""
+    camera, distance = planning.around, planning.settings.ambient_occlusion
+    if not math.isfinite(distance):
+        return SHARE * (camera.size[1] if camera.is_orthographic else camera.pixels_per_unit())
+    if camera.is_orthographic:
+        return distance * camera.pixels_per_unit()
+    corners = planning.scene.table.firm.world_corners.reshape(-1, 3)
+    away = (camera.matrix_world[:3, 3] - corners) @ camera.matrix_world[:3, 2]
+    return distance * camera.pixels_per_unit() / max(float(np.nanmin(away, initial=np.inf)), camera.near)
+
+
+def size(planning) -> tuple[int, int]:
     """Of the whole picture, in pixels."""
-    return planning.camera.size[1]
+    return planning.camera.size
 
 
 def _distance(tile) -> float:
@@ -63,19 +94,34 @@ def _distance(tile) -> float:
     return distance * tile.view.scale if math.isfinite(distance) else 0.0
 
 
-def _reach(tile) -> float:
-    """Search distance in samples."""
-    beside = tile.plan.find(margin)
-    return (beside - FILTERED if beside else max(tile.camera.size)) * tile.plan.samples
+def _first(tile) -> list[int]:
+    """The whole picture's first sample, counted from the tile's."""
+    return [(tile.plan.margin - place) * tile.plan.samples for place in tile.rectangle[:2]]
+
+
+def _picture(tile) -> tuple[int, ...]:
+    """The first and the last sample, x and y of each, that are drawn and belong to the picture."""
+    first, of = _first(tile), tile.plan
+    ends = [start + edge * of.samples for start, edge in zip(first, of.find(size), strict=True)]
+    last = (min(end, edge * of.samples) - 1 for end, edge in zip(ends, tile.camera.size, strict=True))
+    return *(max(start, 0) for start in first), *last
+
+
+def _shift(tile) -> tuple[int, ...]:
+    """Of the pattern of directions: it is the same in all parts of a picture, and another in each of its samples."""
+    turns = tile.camera.sample, tile.camera.sample >> 2
+    return tuple((turn - first) & 3 for turn, first in zip(turns, _first(tile), strict=True))
 
 
 VALUES = {
     "occlusion_distance": ("float", _distance),
-    "occlusion_height": ("float", lambda tile: tile.plan.find(height) * tile.plan.samples),
-    "occlusion_reach": ("float", _reach),
-    "occlusion_shift": ("vec2", lambda tile: (tile.camera.sample & 3, (tile.camera.sample >> 2) & 3)),
+    "occlusion_height": ("float", lambda tile: tile.plan.find(size)[1] * tile.plan.samples),
+    "occlusion_reach": ("float", lambda tile: tile.plan.find(beside)[1] * tile.plan.samples),
+    "occlusion_shift": ("vec2", _shift),
+    "occlusion_picture": ("vec4", _picture),
     "occlusion_turn": ("float", lambda tile: (0.5 + _TURN * tile.camera.sample) % 1),
 }
+CONSTANTS = {"OCCLUSION_SHARE": SHARE}
 
 
 def passes(planning):
@@ -85,17 +131,17 @@ def passes(planning):
     if why := planning.find(missing):
         planning.skip("ambient occlusion", why)
         return
-    planning.find(height)
+    planning.find(size)
     own = Part("ambient_occlusion", reads=(SAMPLE_DEPTHS,), writes=(OPEN,))
     yield sample_depths.of_samples(planning, Host.OCCLUSION, _why(planning), own)
 
 
 def _why(planning) -> str:
-    distance, pixels = planning.settings.ambient_occlusion, planning.find(margin)
+    distance, (drawn, pixels) = planning.settings.ambient_occlusion, planning.find(beside)
     within = f"within {distance:g}" if math.isfinite(distance) else "nearer than half as far as the viewer"
     why = f"surfaces {within} keep the world's light from one another"
-    if pixels:
-        why += f"; the picture is drawn in tiles, so they are looked for up to {pixels - FILTERED} pixels away"
+    if drawn and pixels < max(planning.camera.size):
+        why += f"; the picture is drawn in parts, so they are looked for up to {pixels} pixels away"
     if any_of(lambda instance: instance.is_transparent, planning.surfels):
         why += "; transparent layers neither have it nor cause it"
     return why

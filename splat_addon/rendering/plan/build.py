@@ -53,6 +53,7 @@ def plan(
         samples=samples or settings.samples,
         history=history or no_history(scene),
         around=around or camera,
+        part=part or (0, 0, *camera.size),
     )
     _check_multisampling(planning)
     found = [p for passes in PASSES for p in passes(planning)]
@@ -61,7 +62,7 @@ def plan(
     steps, _ = trimmed(changed(found, lambda p: _with_parts(planning, p, present)), live)
     is_linear = planning.find(depth_format).is_linear
     made = FramePlan(
-        tiles=tiles(part or (0, 0, *camera.size), tile_edge(planning)),
+        tiles=tiles(planning.part, tile_edge(planning)),
         samples=settings.supersampling,
         multisamples=settings.multisampling,
         sample_shading=bool(settings.multisampling and settings.sample_shading),

@@ -22,7 +22,7 @@ Found = TypeVar("Found")
 class Planning:
     """viewers: the cameras that shadow maps serve. is_added_up: whether the picture is a sample of a refining view.
     samples: number of samples that show the scene. history: what earlier pictures have left behind.
-    around: sees all that any sample sees.
+    around: sees all that any sample sees. part: x, y, width, height in pixels of what is drawn of the picture.
 
     shown: everything visible. surfels, polygons: the kinds of it.
     """
@@ -37,10 +37,11 @@ class Planning:
         samples: int,
         history: History,
         around: Camera,
+        part: tuple[int, int, int, int],
     ):
         self.scene, self.camera, self.settings = scene, camera, settings
         self.viewers, self.is_added_up, self.samples = viewers, is_added_up, samples
-        self.history, self.around = history, around
+        self.history, self.around, self.part = history, around, part
         self.method, self.model = get_method(settings.method), get_shading_model(settings.shading)
         self.shown = scene.shown
         self.surfels, self.polygons = (scene.table.kinds.of(kind) for kind in (Instance, PolygonInstance))
