@@ -5,8 +5,9 @@ from __future__ import annotations
 
 import numpy as np
 
-#: Steps of float32 that are too coarse, in distances between points.
-_COARSE = 1e-3
+#: Steps of float32 that are too coarse, in distances between points, and how many points a scan is taken to have at
+#: least, so that a few of its points get the offset that all of them get.
+_COARSE, _FEWEST = 1e-3, 10_000
 
 #: Points that are looked at, and the share of them at each end that may be strays.
 _SAMPLE, _STRAYS = 10_000, 0.02
@@ -22,7 +23,7 @@ def offset_for(positions: np.ndarray) -> np.ndarray:
     extent, farthest = float((high - low).max()), float(np.abs([low, high]).max())
     with np.errstate(over="ignore", invalid="ignore"):
         step = float(np.spacing(np.float32(farthest)))
-    if not (np.isfinite(step) and extent > 0 and step > _COARSE * extent / np.sqrt(len(positions))):
+    if not (np.isfinite(step) and extent > 0 and step > _COARSE * extent / np.sqrt(max(len(positions), _FEWEST))):
         return np.zeros(3)
     unit = 10.0 ** max(np.ceil(np.log10(extent)), 0)
     return np.rint((low + high) / 2 / unit) * unit

@@ -18,7 +18,7 @@ from ...sampling import surfels_from_points
 from ...surfels import Surfels
 from ..geometry.attributes import fill, offset_of
 from ..geometry.scan_attributes import keep_scanner_path, write_scan_attributes
-from ..geometry.scene_offset import keep_offset, offset_for_scan, scene_offset, taken_from
+from ..geometry.scene_offset import Surroundings, keep_offset, taken_from
 from ..geometry.sources import is_surfel_object
 from ..scan_look import add_camera, color_without_colors, give_scan_look, sees, widen_views
 from ..spoken import said
@@ -58,7 +58,7 @@ class FileImport:
     def __init__(self, path: str, properties: PointsProperties, scene: bpy.types.Scene, reading: Reading):
         self.name, self.path = Path(path).name, path
         self._keywords, self._flatness, self._reading = keywords(properties), properties.flatness, reading
-        self._eye, self._offset = viewpoint(properties, scene), scene_offset(scene)
+        self._eye, self._surroundings, self._offset = viewpoint(properties, scene), Surroundings.of(scene), None
         self._attributes, self._rows, self._scanner_path = {}, None, None
         self._is_captured, self._has_colors, self._scanner = True, True, None
         self.share, self.points, self.is_cancelled = 0.0, 0, False
@@ -76,7 +76,7 @@ class FileImport:
         if isinstance(contents, Points):
             self.surfels = self._surfels_of(contents, told)
         else:
-            self.surfels, self._offset = contents.surfels, None
+            self.surfels = contents.surfels
             self._is_captured = isinstance(contents, Gaussians)
             self.notes += contents.notes()
         if not len(self.surfels):
@@ -91,7 +91,7 @@ class FileImport:
     def _surfels_of(self, points: Points, told: Callable[[float], None]) -> Surfels:
         """Surfels in the scene's coordinates; the offset that was taken, the attributes and the notes are kept."""
         self.points = len(points.positions)
-        self._offset = offset_for_scan(self._offset, points.positions)
+        self._offset = self._surroundings.offset_for(points.positions)
         scanners = None if self._eye is not None else points.scanners()
         surfels, report = surfels_from_points(
             points.positions - self._offset,

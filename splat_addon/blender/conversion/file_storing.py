@@ -11,7 +11,7 @@ import numpy as np
 from ...interchange import PlyPortions, is_surfel_ply, point_pieces, read_contents
 from ...streaming import PORTION, write_blocks
 from ...surfels import portions
-from ..geometry.scene_offset import offset_for_scan
+from ..geometry.scene_offset import Surroundings
 from .file_import import Reading
 from .points_settings import PointsProperties, keywords
 from .scan_storing import StoredScan
@@ -28,11 +28,11 @@ class FileStoring:
     """
 
     def __init__(self, source: str | os.PathLike, properties: PointsProperties, reading: Reading, color_by: str,
-                 eye: np.ndarray | None = None, scene_offset: np.ndarray | None = None):  # fmt: skip
-        """eye: (3,) what normals face, None for the scanner. scene_offset: (3,) of the scene that the file is for."""
+                 eye: np.ndarray | None = None, surroundings: Surroundings | None = None):  # fmt: skip
+        """eye: (3,) what normals face, None for the scanner. surroundings: of the scene that the file is for."""
         self._source, self._reading, self._color_by, self._eye = source, reading, color_by, eye
         self._keywords, self._flatness = keywords(properties), properties.flatness
-        self._scene_offset = np.zeros(3) if scene_offset is None else scene_offset
+        self._surroundings = surroundings or Surroundings(np.zeros(3), [])
         self.offset: np.ndarray | None = None
         self.notes: list[str] = []
 
@@ -47,7 +47,7 @@ class FileStoring:
         )
         if pieces is None:
             return self._write_surfels(path, progress)
-        self.offset = offset_for_scan(self._scene_offset, pieces.sample.positions)
+        self.offset = self._surroundings.offset_for(pieces.sample.positions)
         scan = StoredScan(pieces, self.offset, self._eye, self._keywords, self._color_by)
         count = scan.write(path, lambda share, step: progress(_READ + (1 - _READ) * share, step))
         self.notes = scan.notes

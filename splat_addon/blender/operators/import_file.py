@@ -29,7 +29,7 @@ from ..conversion.points_settings import (
 from ..conversion.series import begin_series, first_shown
 from ..conversion.surfel_objects import active_collection, add_object_of, select_only
 from ..geometry.attributes import offset_of, read_surfels, set_offset
-from ..geometry.scene_offset import keep_offset, scene_offset, taken_from
+from ..geometry.scene_offset import Surroundings, keep_offset, taken_from
 from ..geometry.surfel_files import keep_coarsest, relative_path
 from ..ids import IMPORT_FILE
 from ..spoken import said
@@ -257,7 +257,7 @@ class Keeping(Writing):
         super().__init__(path, (), 0, own)
         eye = viewpoint(properties, scene)
         eye = None if eye is None else np.array(eye)
-        self._storing = FileStoring(source, properties, reading, "COLOR", eye, scene_offset(scene))
+        self._storing = FileStoring(source, properties, reading, "COLOR", eye, Surroundings.of(scene))
 
     @property
     def offset(self) -> np.ndarray | None:

@@ -12,9 +12,10 @@ from splat_addon.blender.conversion.file_import import FileImport, Reading
 from splat_addon.blender.conversion.points_settings import PointsProperties
 from splat_addon.blender.geometry.scan_attributes import write_scan_attributes
 from splat_addon.blender.geometry.scene_offset import scene_offset
-from splat_addon.interchange import ReadingCancelled, read_contents
+from splat_addon.interchange import ReadingCancelled, read_contents, write_ply
 from splat_addon.rendering import SCAN_LOOK
 from splat_addon.sampling import SamplingCancelled
+from splat_addon.surfels import Surfels
 
 FINE = (0.0001, 0.0001, 0.0001)
 ROW = [("X", "<i4"), ("Y", "<i4"), ("Z", "<i4"), ("intensity", "<u2"), ("returns", "u1"), ("class", "u1")]
@@ -65,6 +66,27 @@ def test_two_tiles_meet_and_leave_as_they_came(imported, world_positions, tmp_pa
 def test_a_file_near_the_origin_stays_there_in_a_scene_with_an_offset(imported, world_positions):
     imported(CORNERS[0])
     made, places = imported((3.0, 2.0, 1.0))
+    assert np.abs(world_positions(made) - places).max() < 1e-5
+
+
+def test_a_few_points_of_a_survey_meet_all_of_them(imported, world_positions):
+    few, places = imported(CORNERS[0], most_points=20)
+    made, all_places = imported(CORNERS[0])
+    offset = scene_offset(bpy.context.scene)
+    assert offset.any() and np.abs(world_positions(made) + offset - all_places).max() < 1e-5
+    assert np.isclose(world_positions(few)[0] + offset, places, atol=1e-5).all(axis=1).any()
+
+
+def test_a_survey_beside_surfels_that_have_no_offset_meets_them(imported, world_positions, tmp_path):
+    there = Surfels(
+        origin=np.array(CORNERS[0]), positions=np.zeros((1, 3), np.float32), rotations=np.float32([[1, 0, 0, 0]]),
+        scales=np.ones((1, 2), np.float32), normals=np.float32([[0, 0, 1]]), colors=np.ones((1, 4), np.float32),
+        materials=np.zeros(1, np.int32),
+    )  # fmt: skip
+    write_ply(tmp_path / "there.ply", there)
+    bpy.ops.import_scene.surfels_ply(filepath=str(tmp_path / "there.ply"))
+    made, places = imported(CORNERS[1])
+    assert not scene_offset(bpy.context.scene).any()
     assert np.abs(world_positions(made) - places).max() < 1e-5
 
 
