@@ -19,8 +19,9 @@ VIEW_TRANSFORM = "Standard"
 #: Where a camera stands, seen from the middle of a scan.
 _FROM = Vector((0.45, -1.0, 0.65)).normalized()
 
-#: Share of the points that a camera need not show, and points that are looked at to place it.
-_ASIDE, _MOST = 0.002, 100_000
+#: Share of the points that a camera need not show, which it does if it need not stand so many times as far away, and
+#: points that are looked at to place it.
+_ASIDE, _FARTHER, _MOST = 0.002, 1.25, 100_000
 
 #: Focal length in millimetres of a camera in a room, and directions in which it looks for the farthest wall.
 WIDE, _SECTORS = 20.0, 24
@@ -130,7 +131,8 @@ def _stand_in_front(scene: bpy.types.Scene, camera: bpy.types.Object, some: np.n
     half = math.tan(data.angle / 2) * (1 - _ROOM) * np.array((wide, tall)) / max(wide, tall)
     from_middle = seen - middle
     needed = from_middle[:, 2] + (np.abs(from_middle[:, :2]) / half).max(axis=1)
-    distance = max(float(np.quantile(needed, 1 - _ASIDE)), 1e-3)
+    enough = max(float(np.quantile(needed, 1 - _ASIDE)), 1e-3)
+    distance = max(needed[needed <= _FARTHER * enough].max(), 1e-3)
     data.clip_start, data.clip_end = distance / 1000, 100 * distance
     camera.location = turned @ Vector(middle) + distance * _FROM
     camera.rotation_euler = turned.to_euler()

@@ -142,18 +142,20 @@ def _unit_in(text: str, names: tuple[str, ...]) -> float | None:
                 break
         elif token[2]:
             word, rest = token[1].upper(), text[start.end() + token.end() :]
-            number = re.match(r"\s*\"[^\"]*\"\s*,\s*([0-9.eE+-]+)", rest)
-            if word in ("UNIT", "LENGTHUNIT") and number and depth <= (1 if word == "UNIT" else 2):
-                unit = _metres(number[1]) or unit
+            named = re.match(r"\s*\"([^\"]*)\"\s*,\s*([0-9.eE+-]+)", rest)
+            if word in ("UNIT", "LENGTHUNIT") and named and depth <= (1 if word == "UNIT" else 2):
+                unit = _metres(*named.groups()) or unit
             depth += 1
     return unit
 
 
-def _metres(text: str) -> float | None:
+def _metres(name: str, text: str) -> float | None:
     try:
         value = float(text)
     except ValueError:
         return None
+    if value == 1 and re.search(r"foot|feet|\bft", name, re.IGNORECASE):  # programs write it so
+        return _METRES[9003] if "survey" in name.lower() else _METRES[9002]
     return value if np.isfinite(value) and 1e-6 < value < 1e6 else None
 
 

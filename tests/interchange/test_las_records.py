@@ -41,6 +41,7 @@ def keys(projected, vertical=None):
     [
         (2112, PROJECTED.encode(), (FOOT, FOOT)),
         (2112, f'COMPD_CS["both",{PROJECTED},{HEIGHT}]'.encode(), (FOOT, 1)),
+        (2112, f'COMPD_CS["both",{PROJECTED},VERT_CS["h",UNIT["US survey foot",1.0]]]'.encode(), (FOOT, FOOT)),
         (2112, NEW.encode(), (0.3048, 0.3048)),
         (2112, b'GEOGCS["b",UNIT["degree",0.0174532925]]', (1, 1)),
         (2112, b'PROJCS["a",UNIT["m', (1, 1)),

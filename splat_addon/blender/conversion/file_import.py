@@ -154,8 +154,10 @@ class FileImport:
     def status(self) -> str:
         """What the status bar shows."""
         if self.share <= _READING:
-            return said("Reading {count:,} points   Esc cancels", count=self.points)
-        return said("Converting to surfels: {percent:.0f}%   Esc cancels", percent=100 * self.share)
+            step = said("Reading {count:,} points   Esc cancels", count=self.points)
+        else:
+            step = said("Converting to surfels: {percent:.0f}%   Esc cancels", percent=100 * self.share)
+        return f"{self.name}: {step}"
 
     def cancelled(self) -> str:
         return said("The import was cancelled; nothing was changed")

@@ -4,16 +4,18 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 
 import bpy
 import numpy as np
-from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
+from bpy.props import BoolProperty, CollectionProperty, EnumProperty, IntProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper, poll_file_object_drop
 from mathutils import Matrix
 
-from ...interchange import SHARED_SUFFIXES, SUFFIXES, text_columns_of
+from ...interchange import SHARED_SUFFIXES, SUFFIXES, numbered_files, text_columns_of
 from ...streaming import id_of
 from ...streaming.layout import MAGIC, SUFFIX
 from ..conversion.file_import import FileImport, Reading, show_scan
@@ -35,15 +37,15 @@ from ..ids import IMPORT_FILE
 from ..spoken import said
 from .file_paths import absolute, file_sentence, path_property
 from .menu_entry import with_menu_entry
-from .modal_work import ModalWork, Writing
+from .modal_work import FileWork, ModalWork, Writing
 
 #: Steps of Blender's numbers that are coarse, in half-axes of the median surfel.
 _COARSE = 0.1
 
 
 class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ModalWork, ImportHelper, bpy.types.Operator):
-    """Read surfels from a file: one written by this extension, Gaussian splats, or a scan; what it is, its contents \
-tell"""
+    """Read surfels from files: those written by this extension, Gaussian splats, or scans; what a file is, its \
+contents tell"""
 
     bl_idname = IMPORT_FILE
     bl_label = "Import Surfels"
@@ -51,6 +53,8 @@ tell"""
 
     filename_ext = ".ply"
     filepath: path_property("reading from", is_forgotten=True)
+    directory: StringProperty(subtype="DIR_PATH", options={"HIDDEN", "SKIP_SAVE", "SKIP_PRESET"})
+    files: CollectionProperty(type=bpy.types.OperatorFileListElement, options={"HIDDEN", "SKIP_SAVE", "SKIP_PRESET"})
     filter_glob: StringProperty(
         default=";".join(f"*{suffix}" for suffix in (*SUFFIXES, *SHARED_SUFFIXES, SUFFIX)), options={"HIDDEN"}
     )
@@ -116,7 +120,9 @@ tell"""
         if not self.filepath:
             return super().invoke(context, event)
         # dropped: show the settings without a file browser
-        return context.window_manager.invoke_props_dialog(self, title=Path(self.filepath).name, confirm_text="Import")
+        more = f" + {len(self.files) - 1:,}" if len(self.files) > 1 else ""
+        title = Path(self.filepath).name + more
+        return context.window_manager.invoke_props_dialog(self, title=title, confirm_text="Import")
 
     def draw(self, context):
         self.layout.use_property_split = True
@@ -150,17 +156,28 @@ tell"""
         if self.keeps_in_file and self.most_points:
             self.report({"ERROR"}, said("A file of blocks takes all points; set At Most to 0"))
             return {"CANCELLED"}
-        if self.is_series and (self.keeps_in_file or self._holds_blocks()):
-            self.report({"ERROR"}, said("The files of a series are shown from memory; they cannot be files of blocks"))
-            return {"CANCELLED"}
-        if not self._holds_blocks():
-            return self.run_in_thread(context) if is_asked else self.run_now(context)
-        try:
-            count = self._open(context, absolute(self.filepath), is_own=False)
-        except Exception as error:
-            return self._fail(error)
-        self.report({"INFO"}, said("{name}: {count:,} surfels", name=self._name, count=count))
-        return {"FINISHED"}
+        return self.run_in_thread(context) if is_asked else self.run_now(context)
+
+    def _beginnings(self, context):
+        return [partial(self._begin_file, context, path) for path in self._paths()]
+
+    def _paths(self) -> Iterator[str]:
+        """The chosen files; of a series only one."""
+        seen = set()
+        for path in [os.path.join(self.directory, file.name) for file in self.files if file.name] or [self.filepath]:
+            if path not in seen:
+                yield path
+                seen |= self._series_of(path) if self.is_series else {path}
+
+    def _series_of(self, path: str) -> set[str]:
+        """A file and those that are shown with it. What cannot be found is told when it is read."""
+        with suppress(OSError, ValueError):
+            return {path, *map(str, numbered_files(Path(absolute(path))).values())}
+        return {path}
+
+    def _begin_file(self, context, path: str) -> FileWork:
+        self.filepath = path
+        return self._begin(context)
 
     def _holds_blocks(self) -> bool:
         """Whether the file is one of surfels in blocks, by its contents, or else by its name, so that a damaged one is
@@ -172,17 +189,30 @@ tell"""
 
     def _begin(self, context):
         path = absolute(self.filepath)
+        if self.is_series and (self.keeps_in_file or self._holds_blocks()):
+            raise ValueError(said("The files of a series are shown from memory; they cannot be files of blocks"))
+        if self._holds_blocks():
+            return Opening()
         if self.is_series:
             path, self._frame_offset = first_shown(path, context.scene)
         if not self.keeps_in_file:
             return FileImport(path, self, context.scene, Reading.of(self))
         # repeated from the redo panel, it replaces the file whose object was undone
-        own = getattr(self, "_kept", "")
+        own = self._kept_as().get(path, "")
         kept = absolute(f"//{Path(self._name).stem}{SUFFIX}")
         return Keeping(path, kept, self, context.scene, Reading.of(self), own)
 
+    def _kept_as(self) -> dict[str, str]:
+        """Path of a file -> id of the file of blocks that was made of it."""
+        if not hasattr(self, "_kept"):
+            self._kept = {}
+        return self._kept
+
     def _finish(self, context, work):
-        if isinstance(work, FileImport):
+        if isinstance(work, Opening):
+            count = self._open(context, absolute(self.filepath), is_own=False)
+            self.report({"INFO"}, said("{name}: {count:,} surfels", name=self._name, count=count))
+        elif isinstance(work, FileImport):
             made = work.place(context)
             if self.has_scan_look:
                 work.show(context, made)
@@ -202,7 +232,7 @@ tell"""
         if keeping.offset is not None and (note := keep_offset(context.scene, keeping.offset)):
             self._tell([note])
         count = self._open(context, keeping.path, is_own=True)
-        self._kept = id_of(keeping.path)
+        self._kept_as()[absolute(self.filepath)] = id_of(keeping.path)
         if keeping.offset is not None and self.has_scan_look:
             made = context.view_layer.objects.active
             self._tell(show_scan(context, made, read_surfels(made.data)[0].positions))
@@ -211,7 +241,8 @@ tell"""
 
     def _tell(self, notes):
         for note in notes:
-            self.report({"INFO" if is_mild(note) else "WARNING"}, note)
+            which = f"{self._name}: " if len(self.files) > 1 else ""
+            self.report({"INFO" if is_mild(note) else "WARNING"}, which + note)
 
     def _open(self, context, path: str, is_own: bool) -> int:
         """Add an object whose surfels are in a file of blocks; returns how many. Raises OSError or ValueError."""
@@ -244,6 +275,21 @@ tell"""
 
     def _sentence(self, error):
         return f"{self._name}: {file_sentence(error)}"
+
+
+class Opening:
+    """A file of blocks, of which nothing need be read before it is shown."""
+
+    share, is_cancelled = 1.0, False
+
+    def run(self, told=None) -> None:
+        pass
+
+    def status(self) -> str:
+        return ""
+
+    def cancelled(self) -> str:
+        return said("The import was cancelled; nothing was changed")
 
 
 class Keeping(Writing):

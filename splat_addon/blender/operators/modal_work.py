@@ -5,6 +5,7 @@ from a script or in background mode, `execute` does."""
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from functools import partial
 from typing import Protocol
 
 import bpy
@@ -65,11 +66,16 @@ class Writing:
 
 
 class ModalWork(ModalThread):
-    """A mix-in for operators. Nothing is changed in Blender before `_finish`."""
+    """A mix-in for operators, which do one thing after another. Nothing is changed in Blender before `_finish`."""
 
     def _begin(self, context: bpy.types.Context) -> FileWork:
         """What to do. Raises OSError or ValueError with a sentence."""
         raise NotImplementedError
+
+    def _beginnings(self, context: bpy.types.Context) -> Iterable[Callable[[], FileWork]]:
+        """A way to begin each thing, which is called once those before it are finished. What cannot be done is reported
+        and the next begins."""
+        return [partial(self._begin, context)]
 
     def _finish(self, context: bpy.types.Context, work: FileWork) -> None:
         """Use what is complete, and report. Raises OSError or ValueError with a sentence."""
@@ -82,40 +88,56 @@ class ModalWork(ModalThread):
         """Work to the end. Whatever ends it early, Ctrl-C too, leaves neither a file nor any other change."""
         manager = context.window_manager
         manager.progress_begin(0.0, 1.0)
+        self._prepare(context)
         try:
-            work = self._begin(context)
-            work.run(manager.progress_update)
-            self._finish(context, work)
-        except Exception as error:
-            return self._fail(error)
+            while work := self._next():
+                self._conclude(context, work, partial(work.run, manager.progress_update))
         finally:
             manager.progress_end()
-        return {"FINISHED"}
+        return self._ended()
 
     def run_in_thread(self, context: bpy.types.Context) -> set[str]:
         """Begin; `modal` goes on."""
         if bpy.app.background:
             return self.run_now(context)
-        try:
-            work = self._begin(context)
-        except Exception as error:
-            return self._fail(error)
-        return self._begin_thread(context, work)
+        self._prepare(context)
+        work = self._next()
+        return self._begin_thread(context, work) if work else self._ended()
 
     def _advance(self, context):
-        if self._job is None:
+        if self._job is not None:
+            self._conclude(context, self._work, self._job.result)
+            self._work = None if self._work.is_cancelled else self._next()
+        if self._work:
             return self._submit(self._work.run)
         self._end_thread(context)
-        try:
-            self._job.result()
-            self._finish(context, self._work)
-        except _CANCELLED:
-            self.report({"INFO"}, self._work.cancelled())
-            return {"CANCELLED"}
-        except Exception as error:
-            return self._fail(error)
-        return {"FINISHED"}
+        return self._ended()
 
-    def _fail(self, error: Exception):
-        self.report({"ERROR"}, self._sentence(error))
-        return {"CANCELLED"}
+    def _prepare(self, context: bpy.types.Context) -> None:
+        self._waiting, self._done, self._refused = iter(self._beginnings(context)), 0, []
+
+    def _next(self) -> FileWork | None:
+        """The next work that can begin."""
+        for begin in self._waiting:
+            try:
+                return begin()
+            except Exception as error:
+                self._refused.append(self._sentence(error))
+        return None
+
+    def _conclude(self, context: bpy.types.Context, work: FileWork, result: Callable[[], None]) -> None:
+        """Use what a work gave. result: ends once it is complete, and raises its errors."""
+        try:
+            result()
+            self._finish(context, work)
+            self._done += 1
+        except _CANCELLED:
+            self.report({"INFO"}, work.cancelled())
+        except Exception as error:
+            self._refused.append(self._sentence(error))
+
+    def _ended(self) -> set[str]:
+        # an error makes a script's call fail, which would hide from it that others were finished
+        for sentence in self._refused:
+            self.report({"WARNING" if self._done else "ERROR"}, sentence)
+        return {"FINISHED"} if self._done else {"CANCELLED"}

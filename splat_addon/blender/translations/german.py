@@ -807,11 +807,11 @@ GERMAN = {
     "Ray Cast, as Printed": "Raycast, wie gedruckt",
     "Ray Visibility": "Strahlensichtbarkeit",
     (
-        "Read surfels from a file: one written by this extension, Gaussian splats, or a scan; what it is, its contents "
-        "tell"
+        "Read surfels from files: those written by this extension, Gaussian splats, or scans; what a file is, its "
+        "contents tell"
     ): (
-        "Surfels aus einer Datei lesen: aus einer von dieser Erweiterung geschriebenen, aus Gaussian Splats oder aus "
-        "einem Scan; was sie ist, sagt ihr Inhalt"
+        "Surfels aus Dateien lesen: aus von dieser Erweiterung geschriebenen, aus Gaussian Splats oder aus Scans; was "
+        "eine Datei ist, sagt ihr Inhalt"
     ),
     "Surfels and Scans": "Surfels und Scans",
     "Surfels and Scans (.ply, .las, ...)": "Surfels und Scans (.ply, .las, ...)",

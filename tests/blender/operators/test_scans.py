@@ -8,6 +8,7 @@ from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Vector
 
 from scan_files.formats import las_file, ptx_scan
+from splat_addon.blender import scan_look
 from splat_addon.blender.conversion.file_import import FileImport, Reading
 from splat_addon.blender.conversion.points_settings import PointsProperties
 from splat_addon.blender.geometry.scan_attributes import write_scan_attributes
@@ -75,6 +76,30 @@ def test_a_few_points_of_a_survey_meet_all_of_them(imported, world_positions):
     offset = scene_offset(bpy.context.scene)
     assert offset.any() and np.abs(world_positions(made) + offset - all_places).max() < 1e-5
     assert np.isclose(world_positions(few)[0] + offset, places, atol=1e-5).all(axis=1).any()
+
+
+def test_several_files_come_in_at_once_and_those_that_cannot_be_read_are_named(world_positions, tmp_path):
+    places = {}
+    for name, corner in zip(("a.las", "b.las"), CORNERS, strict=True):
+        data, places[name] = tile(corner)
+        (tmp_path / name).write_bytes(data)
+    (tmp_path / "c.las").write_bytes(b"LASF")
+    files = [{"name": name} for name in ("a.las", "c.las", "b.las")]
+    kept = {"directory": str(tmp_path), "isolated": "KEEP"}
+    assert bpy.ops.import_scene.surfels_ply(files=files, **kept) == {"FINISHED"}
+    made, offset = [bpy.data.objects[name] for name in ("a", "b")], scene_offset(bpy.context.scene)
+    for each in made:
+        assert np.abs(world_positions(each) + offset - places[f"{each.name}.las"]).max() < 1e-5
+    with pytest.raises(RuntimeError, match=r"c\.las: The LAS file ends"):
+        bpy.ops.import_scene.surfels_ply(files=files[1:2], **kept)
+
+
+def test_of_a_series_whose_files_are_all_chosen_one_object_is_made(tmp_path):
+    for number in (1, 2, 3):
+        (tmp_path / f"walk{number}.las").write_bytes(tile(CORNERS[0])[0])
+    files = [{"name": f"walk{number}.las"} for number in (1, 2, 3)]
+    bpy.ops.import_scene.surfels_ply(directory=str(tmp_path), files=files, is_series=True, isolated="KEEP")
+    assert [each.name for each in bpy.data.objects if each.type == "MESH"] == ["walk1"]
 
 
 def test_a_survey_beside_surfels_that_have_no_offset_meets_them(imported, world_positions, tmp_path):
@@ -146,6 +171,16 @@ def test_the_first_scan_of_a_scene_gets_the_look_of_scans_and_a_camera_that_sees
     settings.shading, scene.camera = "phong", None
     imported(CORNERS[1])
     assert settings.shading == "phong" and scene.camera is not None
+
+
+def test_the_camera_shows_thin_ends_of_a_scan_but_no_place_far_from_it(camera):
+    x, y = (axis.ravel() for axis in np.meshgrid(np.linspace(-10, 10, 50), np.linspace(-10, 10, 50)))
+    ends = [(-11.5, 0, 0), (11.5, 0, 0), (0, -11.5, 0)]
+    some = np.concatenate([np.stack([x, y, 0 * x], axis=1), ends, [(500, 0, 0)]])
+    scan_look._stand_in_front(bpy.context.scene, camera, some)
+    bpy.context.view_layer.update()
+    assert all(0 < x < 1 and 0 < y < 1 for x, y, _ in (camera_places(bpy.context.scene, Vector(end)) for end in ends))
+    assert camera.location.length < 100
 
 
 @pytest.mark.parametrize("middle", [(0, 0, 0), (300, 0, 0)])
