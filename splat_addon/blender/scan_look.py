@@ -132,7 +132,7 @@ def _stand_in_front(scene: bpy.types.Scene, camera: bpy.types.Object, some: np.n
     from_middle = seen - middle
     needed = from_middle[:, 2] + (np.abs(from_middle[:, :2]) / half).max(axis=1)
     enough = max(float(np.quantile(needed, 1 - _ASIDE)), 1e-3)
-    distance = max(needed[needed <= _FARTHER * enough].max(), 1e-3)
+    distance = max(float(needed[needed <= _FARTHER * enough].max()), 1e-3)
     data.clip_start, data.clip_end = distance / 1000, 100 * distance
     camera.location = turned @ Vector(middle) + distance * _FROM
     camera.rotation_euler = turned.to_euler()
