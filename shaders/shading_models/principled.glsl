@@ -13,6 +13,8 @@
 
 const float LEAST_ROUGHNESS = 0.03;
 const float MIN_COSINE = 1e-4;
+// A mirror: what is less rough reflects lights that have a size, and no others, as in Cycles.
+const float MIRROR_ROUGHNESS = 0.0038;
 // A dielectric with almost no reflectance at normal incidence is effectively absent, and does not reflect at grazing
 // incidence as in Schlick's formula (Lagarde & de Rousiers, "Moving Frostbite to PBR", 2014, section 3.1.1).
 const float GRAZING_GAIN = 50.0;
@@ -52,6 +54,7 @@ vec3 shade(vec3 position, vec3 normal, vec3 base, vec3 material) {
   lobe.diffuse_albedo = base * (1.0 - metallic) * (1.0 - lost);
   lobe.specular_albedo = specular_albedo(terms, lobe.f0, lobe.f90, lobe.scattered);
   #hook dim(lobe, base, metallic)
+  if (material.x < MIRROR_ROUGHNESS) lobe.scattered = vec3(0.0);
   #hook cover(lobe)
   vec3 reflected = mean_direction(terms_mean.zw, lobe.to_viewer, normal);
   vec3 radiance = lobe.diffuse_albedo * world_irradiance(normal)
@@ -137,7 +140,7 @@ void coat_cover(inout Lobe lobe) {
   coat.specular_albedo = specular_albedo(table_at(coat.roughness, coat.nv, 1).xy, coat.f0, coat.f90, coat.scattered);
   vec3 passed = 1.0 - weight * coat.specular_albedo;
   coat.specular_albedo *= weight * passed_on;
-  coat.scattered *= weight * passed_on;
+  coat.scattered *= tint_roughness.a < MIRROR_ROUGHNESS ? vec3(0.0) : weight * passed_on;
   float refracted = sqrt(1.0 - (1.0 - coat.nv * coat.nv) / (ior * ior));  // cosine, of which the way is the inverse
   cover(lobe, passed * mix(vec3(1.0), pow(tint_roughness.rgb, vec3(1.0 / refracted)), weight));
 }

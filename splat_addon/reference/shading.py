@@ -30,6 +30,9 @@ from .world import WorldLight
 #: Below this roughness a highlight from a light without size is a single bright sub-sample.
 MIN_ROUGHNESS = 0.03
 
+#: What is less rough is a mirror, which reflects lights that have a size, and no others, as in Cycles.
+MIRROR_ROUGHNESS = 0.0038
+
 #: The least cosine to the viewer, which rays at the silhouette would bring to 0 or, by averaging, below.
 MIN_VIEW_COSINE = 1e-4
 
@@ -119,6 +122,7 @@ def _base(surface: Surface, nv, finish) -> _Lobe:
     diffuse = surface.color * (1 - metallic) * (1 - lost)
     specular, scattered = specular_albedo(roughness, nv, f0, f90)
     specular = specular - edge * edge_at(roughness, nv) * scattered
+    scattered = scattered * (surface.roughness >= MIRROR_ROUGHNESS)[:, None]
     return _Lobe(roughness, diffuse, f0, f90, specular, scattered, edge)
 
 
@@ -130,6 +134,7 @@ def _coat(finish: np.ndarray, nv) -> tuple[_Lobe, np.ndarray]:
     f0 = ((ior - 1) / (ior + 1)) ** 2 * np.ones(3)
     f90, none = np.minimum(GRAZING_GAIN * f0[:, :1], 1), np.zeros_like(f0)
     specular, scattered = specular_albedo(roughness, nv, f0, f90)
+    scattered = scattered * (finish[:, 7:8] >= MIRROR_ROUGHNESS)
     way = 1 / np.sqrt(1 - (1 - nv[:, None] ** 2) / ior**2)
     let_through = (1 - weight * specular) * (1 + weight * (tint**way - 1))
     return _Lobe(roughness, none, f0, f90, specular * weight, scattered * weight, none), let_through

@@ -217,3 +217,20 @@ def test_a_finish_of_unusable_numbers_is_refused(numbers):
 def test_an_emission_that_is_not_finite_is_refused():
     with pytest.raises(ValueError, match="A material's"):
         Material(emission=(np.nan, 0, 0))
+
+
+@pytest.mark.parametrize("coated", [False, True])
+def test_a_mirror_reflects_lamps_that_have_a_size_and_no_others(coated, render):
+    """The lamp is where the viewer is, and below a coat is rough metal."""
+
+    def brightness(roughness, size):
+        coat = Finish(coat=1.0, coat_roughness=roughness) if coated else Finish()
+        scene, camera = sphere(world=(0, 0, 0))
+        lamp = Light("sun", direction=tuple(-camera.matrix_world[:3, 2]), size=size)
+        material = {"metallic": 1.0, "roughness": 1.0 if coated else roughness, "finish": coat}
+        scene = with_material(replace(scene, lights=(lamp,)), **material)
+        return render(scene, camera, SETTINGS).color[..., :3].max()
+
+    rough, mirror, lit = brightness(0.1, 0.0), brightness(0.0, 0.0), brightness(0.0, 0.3)
+    assert mirror < 0.5 * rough and lit > 2 * mirror
+    assert lit == brightness(0.01, 0.3)
