@@ -38,6 +38,7 @@ from .plan.graph import Pause, Texture
 from .plan.shared import Shared
 from .plan.tile import TileContext, texture_key
 from .probes.drawing import Probes
+from .probes.pictures import ProbePictures
 from .read_back import assembled, background, background_pixel, mended, positions_of, read_tile
 from .scene import Scene
 from .scene.camera import Camera
@@ -194,39 +195,44 @@ class Renderer:
         whole: Scene | None = None,
         eye: np.ndarray | None = None,
         is_draft: bool = False,
+        known: ProbePictures | None = None,
         **options,
     ) -> Shared:
         """The plan of a picture and all that its samples share. repeated: how many samples follow one another. whole:
         the scene that lights what is drawn, if that is only a part. eye: where the viewer is, if the camera is a
-        probe's or behind a mirror. is_draft: whether a better picture follows. options: of `plan`."""
+        probe's or behind a mirror. is_draft: whether a better picture follows. known: what probes saw, if the picture
+        is of what is reflected. options: of `plan`."""
         eye = camera.matrix_world[:3, 3] if eye is None else eye
         whole, scene = whole or scene, self.near_and_far.resolved(scene, camera)
         before = no_history(scene) if is_repeatable else history(scene, self._drawn)
-        frame_plan = plan(scene, camera, settings, history=before, **options)
+        probes = known.probes if known else ()
+        frame_plan = plan(scene, camera, settings, history=before, probes=probes, **options)
         check_samplers(frame_plan, self.device.max_samplers)
-        seen = self._reflected(
-            scene, camera, settings, frame_plan, is_repeatable=is_repeatable, whole=whole, eye=eye, is_draft=is_draft
-        )
+        told = {"is_repeatable": is_repeatable, "whole": whole, "eye": eye, "is_draft": is_draft}
+        seen = (known, None, None) if known else self._reflected(scene, camera, settings, frame_plan, told)
         is_bounced = frame_plan.found.get(bounced_light.missing) == ""
         light = None
         if is_bounced and frame_plan.passes:
             light = self.bounced.of(whole, eye, settings.bounces, is_draft)
         return Shared(scene, frame_plan, settings, repeated, before, *seen, light)
 
-    def _reflected(self, scene: Scene, camera: Camera, settings: Settings, frame_plan: FramePlan, **options):
+    def _reflected(self, scene: Scene, camera: Camera, settings: Settings, frame_plan: FramePlan, told: dict):
         """What the plan's probes and mirror see, and what is behind its glass, drawn if anything in it has changed;
-        None for what it lacks. options: of `_planned`."""
+        None for what it lacks. told: options of `_planned`."""
 
-        def draw(seen: Scene, camera: Camera, of: Viewers, plain: Settings) -> Frame:
-            shared = self._planned(seen, camera, plain, viewers=of, **options)
+        def draw(seen: Scene, camera: Camera, of: Viewers, plain: Settings, known: ProbePictures | None) -> Frame:
+            shared = self._planned(seen, camera, plain, viewers=of, known=known, **told)
             return self._frame(shared, camera, None, None)
 
-        found = frame_plan.found
-        probes, mirror = found.get(reflections.probes), found.get(mirrors.mirror)
+        found, kept, known = frame_plan.found, self.probes, None
+        if probes := found.get(reflections.probes):
+            how = told["is_draft"], told["is_repeatable"]
+            known = kept.pictures(scene, probes, found[reflections.side], settings, draw, *how)
+        mirror = found.get(mirrors.mirror)
         return (
-            self.probes.pictures(scene, probes, settings, draw) if probes else None,
-            self.probes.mirror(scene, mirror, camera, settings, draw) if mirror else None,
-            self.probes.glass(scene, camera, settings, draw) if found.get(glass.glass) else None,
+            known,
+            kept.mirror(scene, mirror, camera, settings, known, draw) if mirror else None,
+            kept.glass(scene, camera, settings, known, draw) if found.get(glass.glass) else None,
         )
 
     def _was_drawn(self, scene: Scene) -> None:

@@ -11,6 +11,7 @@ from splat_addon.reference import scenes
 from splat_addon.reference.reflections import map_at, met_directions
 from splat_addon.rendering import (
     Camera,
+    Frame,
     Light,
     Material,
     PolygonInstance,
@@ -118,6 +119,53 @@ def test_the_rim_of_what_is_near_a_ball_lies_where_rays_pass_it(render):
     assert 200 < meets.sum() < 0.5 * len(meets)
     is_red = np.abs(ours - RED).max(axis=1) < np.abs(ours - SKY).max(axis=1)
     assert np.count_nonzero(is_red != meets) < 0.05 * meets.sum()
+
+
+def test_a_mirror_in_a_mirror_shows_what_stands_around(render):
+    """Rays that meet the second ball are reflected once more, and do not end in the world's colour."""
+    second = np.array((-0.55, -0.85, HEIGHT + 0.1))
+    scene, view = replace(MIRROR, polygons=[ball(), ball(place=second, radius=0.4), FLOOR]), camera((96, 96))
+    hits, place, direction = rays_of(view)
+    frame = render(scene, view, SETTINGS)
+    shown = np.linalg.norm(view.points_at(frame.depth)[hits] - place, axis=1) < 0.01  # not hidden by the second ball
+    along = ((second - place) * direction).sum(axis=1)
+    square = 0.4**2 - (((second - place) ** 2).sum(axis=1) - along**2)
+    meets = shown & (along > 0) & (square > 0.15**2)  # not at the rim
+    at = place[meets] + (along[meets] - np.sqrt(square[meets]))[:, None] * direction[meets]
+    normal = (at - second) / 0.4
+    again = direction[meets] - 2 * (direction[meets] * normal).sum(axis=1, keepdims=True) * normal
+    true, ours = true_colors(at, again), frame.color[hits][meets][:, :3]
+    is_close, is_ground = np.abs(ours - true).max(axis=1) < 0.1, (true != SKY).any(axis=1)
+    assert is_ground.sum() > 50 and is_close[is_ground].mean() > 0.5
+
+
+def test_what_probes_saw_serves_as_long_as_it_is_fine_and_complete_enough():
+    """A draft may lack what mirrors show of one another. Where pictures must be repeatable, finer ones do not serve."""
+    scene, drawn, kept = replace(MIRROR, polygons=[ball(), ball(place=(2, 0, 1)), FLOOR]), [], drawing.Probes()
+    (probes, _), small, large = probes_of(scene, camera()), pictures.BLUNT_SIDE, pictures.SHARP_SIDE
+
+    def draw(seen, view, of, settings, known):
+        drawn.append(known is not None)
+        size = view.size[::-1]
+        return Frame(color=np.zeros((*size, 4), np.float32), depth=np.ones(size, np.float32), stats={})
+
+    def pictures_of(side, is_draft=False, is_repeatable=False):
+        drawn.clear()
+        made = kept.pictures(scene, probes, side, SETTINGS, draw, is_draft, is_repeatable)
+        return made.side, sorted(set(drawn))
+
+    assert all(probe.sees_others for probe in probes)
+    assert pictures_of(small, is_draft=True) == (small, [False])
+    assert pictures_of(small) == (small, [False, True])
+    assert pictures_of(small, is_draft=True) == (small, [])
+    assert pictures_of(large) == (large, [False, True])
+    assert pictures_of(small) == (large, [])
+    assert pictures_of(small, is_repeatable=True) == (small, [False, True])
+
+
+def test_what_is_large_in_the_picture_has_finer_probes():
+    sides = [pictures.side_of(probes_of(MIRROR, view)[0], view) for view in (camera((64, 64)), camera((512, 512)))]
+    assert sides == [pictures.SHARP_SIDE, pictures.LARGE_SIDE]
 
 
 @pytest.fixture

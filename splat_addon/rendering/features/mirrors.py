@@ -13,8 +13,8 @@ from .reflections import missing
 
 
 def mirror(planning):
-    """The frame's mirror, or None."""
-    if planning.find(missing):
+    """The frame's mirror, or None: a picture of what is reflected has none."""
+    if planning.probes or planning.find(missing):
         return None
     found, others = mirror_of(planning.scene, planning.camera)
     if others:

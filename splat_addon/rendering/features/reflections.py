@@ -8,7 +8,7 @@ import numpy as np
 
 from ..plan.graph import Part
 from ..plan.hosts import LIT_HOSTS
-from ..probes.pictures import HEADER, MAPS
+from ..probes.pictures import HEADER, MAPS, side_of
 from ..probes.places import MAX_PROBES, probes_of
 
 
@@ -17,12 +17,19 @@ def probes(planning):
     if why := planning.find(missing):
         planning.skip("reflections", why)
         return ()
+    if planning.probes:
+        return planning.probes
     found, without = probes_of(planning.scene, planning.around)
     if not found:
         planning.skip("reflections", "nothing that is not flat is glossy")
     if without:
         planning.skip(f"reflections of {without} objects", f"there is room for {MAX_PROBES} probes")
     return found
+
+
+def side(planning) -> int:
+    """Texels along the side of what each probe sees."""
+    return side_of(planning.find(probes), planning.around)
 
 
 def missing(planning) -> str:
@@ -56,6 +63,7 @@ CONSTANTS = {"PROBE_HEADER": HEADER, "PROBE_MAPS": MAPS}
 def passes(planning):
     """None of its own: probes are drawn before the frame, and only when the scene has changed."""
     if planning.shown and (found := planning.find(probes)):
+        planning.find(side)
         planning.has("REFLECTIONS", f"{len(found)} probes see what glossy objects reflect")
     return ()
 

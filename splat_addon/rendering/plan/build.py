@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterable
 from ..detail.history import History, no_history
 from ..features import CHECKS, MARGINS, PARTS, PASSES, READ_BACK
 from ..passes.decisions import depth_format
+from ..probes.places import Probe
 from ..scene import Scene
 from ..scene.camera import Camera
 from ..settings import Settings
@@ -19,7 +20,7 @@ from ..shading_models import get_shading_model
 from ..shadows.receivers import Viewers
 from ..upload.storages import get_storage
 from .frame_plan import FramePlan
-from .graph import Part, Pass, changed, trimmed
+from .graph import Part, Pass, Step, changed, trimmed
 from .planning import Planning
 from .tiles import tile_edge, tiles
 
@@ -34,6 +35,7 @@ def plan(
     samples: int | None = None,
     history: History | None = None,
     around: Camera | None = None,
+    probes: tuple[Probe, ...] = (),
 ) -> FramePlan:
     """The passes that this picture needs.
 
@@ -43,6 +45,7 @@ def plan(
     samples: number of samples that show this scene, if fewer than the picture's.
     history: what earlier pictures have left behind; None for a picture that is the same whatever was drawn before it.
     around: a camera that sees all that the cameras of several samples see, if the plan is for all of them.
+    probes: those that are drawn, if the picture is of what is reflected: glossy objects in it show what these saw.
     """
     planning = Planning(
         scene,
@@ -54,12 +57,10 @@ def plan(
         history=history or no_history(scene),
         around=around or camera,
         part=part or (0, 0, *camera.size),
+        probes=probes,
     )
     _check_multisampling(planning)
-    found = [p for passes in PASSES for p in passes(planning)]
-    present = [parts for parts, is_present in PARTS if is_present(planning)]
-    live = {texture for read_back in READ_BACK for texture in read_back(planning)}
-    steps, _ = trimmed(changed(found, lambda p: _with_parts(planning, p, present)), live)
+    steps = _steps(planning)
     is_linear = planning.find(depth_format).is_linear
     made = FramePlan(
         tiles=tiles(planning.part, tile_edge(planning)),
@@ -83,6 +84,15 @@ def plan(
     for check in CHECKS:
         check(made)
     return made
+
+
+def _steps(planning: Planning) -> tuple[Step, ...]:
+    """The passes and loops whose results are read, with the parts of all features that are present."""
+    found = [p for passes in PASSES for p in passes(planning)]
+    present = [parts for parts, is_present in PARTS if is_present(planning)]
+    live = {texture for read_back in READ_BACK for texture in read_back(planning)}
+    steps, _ = trimmed(changed(found, lambda p: _with_parts(planning, p, present)), live)
+    return steps
 
 
 def _check_multisampling(planning: Planning) -> None:

@@ -9,6 +9,7 @@ from typing import TypeVar
 
 from ..detail.history import History
 from ..methods import get_method
+from ..probes.places import Probe
 from ..scene import Instance, Placed, PolygonInstance, Scene
 from ..scene.camera import Camera
 from ..scene.table import Kinds
@@ -23,6 +24,7 @@ class Planning:
     """viewers: the cameras that shadow maps serve. is_added_up: whether the picture is a sample of a refining view.
     samples: number of samples that show the scene. history: what earlier pictures have left behind.
     around: sees all that any sample sees. part: x, y, width, height in pixels of what is drawn of the picture.
+    probes: those that are drawn, if the picture is of what is reflected.
 
     shown: everything visible. surfels, polygons: the kinds of it.
     """
@@ -38,10 +40,11 @@ class Planning:
         history: History,
         around: Camera,
         part: tuple[int, int, int, int],
+        probes: tuple[Probe, ...],
     ):
         self.scene, self.camera, self.settings = scene, camera, settings
         self.viewers, self.is_added_up, self.samples = viewers, is_added_up, samples
-        self.history, self.around, self.part = history, around, part
+        self.history, self.around, self.part, self.probes = history, around, part, probes
         self.method, self.model = get_method(settings.method), get_shading_model(settings.shading)
         self.shown = scene.shown
         self.surfels, self.polygons = (scene.table.kinds.of(kind) for kind in (Instance, PolygonInstance))

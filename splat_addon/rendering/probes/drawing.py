@@ -21,11 +21,11 @@ from ..settings import Settings
 from ..shadows.receivers import Viewers
 from .glass import GlassPicture, WithoutGlass, behind_camera, surfaces_of
 from .mirrors import Mirror, MirrorPicture, mirrored_camera
-from .pictures import ProbePictures, side_of
+from .pictures import ProbePictures
 from .places import Probe
 
-#: (what a probe sees, a face's camera, the cameras that its shadow maps serve, settings) -> Frame
-Draw = Callable[[Scene, Camera, Viewers, Settings], Frame]
+#: (what a probe sees, a face's camera, the cameras that its shadow maps serve, settings, what probes saw) -> Frame
+Draw = Callable[[Scene, Camera, Viewers, Settings, ProbePictures | None], Frame]
 
 #: Of a probe's radius, how far away something must be to be seen; and of the farthest thing, how far it sees.
 _NEAREST, _FARTHEST = 1e-3, 1.01
@@ -35,47 +35,71 @@ class Probes:
     """The pictures of one renderer's last scene, and of the last view's mirror."""
 
     def __init__(self):
-        self._kept: tuple[tuple, ProbePictures] | None = None
+        self._kept: tuple[tuple, ProbePictures, bool] | None = None
         self._mirrored: tuple[tuple, MirrorPicture] | None = None
         self._surfaces: tuple[tuple, GlassSurfaces] | None = None
         self._behind: tuple[tuple, GlassPicture] | None = None
         self._without_glass = WithoutGlass()
 
-    def pictures(self, scene: Scene, probes: tuple[Probe, ...], settings: Settings, draw: Draw) -> ProbePictures:
-        """What the probes see: the same object as long as the scene is."""
-        plain, size = _plain(settings), (side_of(probes) + 2,) * 2
+    def pictures(
+        self, scene: Scene, probes: tuple[Probe, ...], side: int, settings: Settings, draw: Draw, is_draft: bool,
+        is_repeatable: bool,
+    ) -> ProbePictures:  # fmt: skip
+        """What the probes see: the same object as long as the scene is, and no finer one is needed.
+
+        side: texels along that of each picture. is_draft: what glossy things show of one another may be missing.
+        is_repeatable: as in `Renderer.render`.
+        """
+        plain = _plain(settings)
+        is_whole = not (is_draft and any(probe.sees_others for probe in probes))
         made_from = probes, plain, settings.refraction, contents(scene)
-        if self._kept is None or self._kept[0] != made_from:
-            frames = []
-            for probe in probes:
-                seen, panorama = self._seen(scene, probe.left_out, settings), _panorama(scene, probe, size)
+        if self._kept is not None and self._kept[0] == made_from:
+            _, kept, was_whole = self._kept
+            if (kept.side == side or (kept.side > side and not is_repeatable)) and was_whole >= is_whole:
+                return kept
 
-                def drawn(camera, of, settings, progress, seen=seen) -> Frame:
-                    return draw(seen, camera, of, settings)
+        def taken(probe: Probe, known: ProbePictures | None) -> Frame:
+            seen, chosen = self._seen(scene, probe.left_out, settings), _reflecting(plain, known)
+            panorama = _panorama(scene, probe, (side + 2, side + 2))
 
-                frames.append(panorama_frame(panorama, 0, plain, drawn))
-            self._kept = made_from, ProbePictures(probes, frames)
-        return self._kept[1]
+            def drawn(camera, of, settings, progress) -> Frame:
+                return draw(seen, camera, of, settings, known)
 
-    def mirror(self, scene: Scene, mirror: Mirror, camera: Camera, settings: Settings, draw: Draw) -> MirrorPicture:
-        """What the mirror shows to a camera: the same object as long as both stay."""
-        plain, behind = replace(_plain(settings), supersampling=2), mirrored_camera(mirror, camera)
+            return panorama_frame(panorama, 0, chosen, drawn)
+
+        frames = [taken(probe, None) for probe in probes]
+        made = ProbePictures(probes, frames)
+        if is_whole and any(probe.sees_others for probe in probes):
+            pairs = zip(probes, frames, strict=True)
+            made = ProbePictures(probes, [taken(probe, made) if probe.sees_others else frame for probe, frame in pairs])
+        self._kept = made_from, made, is_whole
+        return made
+
+    def mirror(
+        self, scene: Scene, mirror: Mirror, camera: Camera, settings: Settings, known: ProbePictures | None, draw: Draw
+    ) -> MirrorPicture:
+        """What the mirror shows to a camera: the same object as long as both stay. known: what the probes see."""
+        plain = replace(_reflecting(_plain(settings), known), supersampling=2)
+        behind = mirrored_camera(mirror, camera)
         view = behind.matrix_world.tobytes(), behind.window, behind.size, behind.near, behind.far
-        made_from = mirror, view, behind.is_orthographic, plain, settings.refraction, contents(scene)
+        made_from = mirror, view, behind.is_orthographic, plain, known, settings.refraction, contents(scene)
         if self._mirrored is None or self._mirrored[0] != made_from:
-            seen = draw(self._seen(scene, mirror.left_out, settings), behind, Viewers(behind, (behind,)), plain)
+            seen = draw(self._seen(scene, mirror.left_out, settings), behind, Viewers(behind, (behind,)), plain, known)
             self._mirrored = made_from, MirrorPicture(mirror, behind, seen)
         return self._mirrored[1]
 
-    def glass(self, scene: Scene, camera: Camera, settings: Settings, draw: Draw) -> GlassPicture:
-        """What a camera sees behind glass: the same object as long as both stay."""
-        plain, behind, of_scene = replace(_plain(settings), supersampling=2), behind_camera(camera), contents(scene)
+    def glass(
+        self, scene: Scene, camera: Camera, settings: Settings, known: ProbePictures | None, draw: Draw
+    ) -> GlassPicture:
+        """What a camera sees behind glass: the same object as long as both stay. known: what the probes see."""
+        plain = replace(_reflecting(_plain(settings), known), supersampling=2)
+        behind, of_scene = behind_camera(camera), contents(scene)
         if self._surfaces is None or self._surfaces[0] != of_scene:
             self._surfaces = of_scene, surfaces_of(scene.table)
         view = behind.matrix_world.tobytes(), behind.window, behind.size, behind.near, behind.far
-        made_from = view, behind.is_orthographic, plain, of_scene
+        made_from = view, behind.is_orthographic, plain, known, of_scene
         if self._behind is None or self._behind[0] != made_from:
-            seen = draw(self._without_glass.of(scene), behind, Viewers(behind, (behind,)), plain)
+            seen = draw(self._without_glass.of(scene), behind, Viewers(behind, (behind,)), plain, known)
             self._behind = made_from, GlassPicture(self._surfaces[1], behind, seen)
         return self._behind[1]
 
@@ -89,12 +113,17 @@ class Probes:
 
 
 def _plain(settings: Settings) -> Settings:
-    """Settings for what probes see: blurred and filtered later, and without what it reflects itself."""
+    """Settings for what probes see: blurred and filtered later, and without what things in it reflect."""
     return replace(
         settings, method="quad", lines=None, eye_dome=None, supersampling=1, samples=1, multisampling=0,
         edge_threshold=0.0, filter_variance=Settings.filter_variance, reflections=False, refraction=False,
         transparent_film=True, as_printed=False, outputs=("color", "depth"), profile=False,
     )  # fmt: skip
+
+
+def _reflecting(plain: Settings, known: ProbePictures | None) -> Settings:
+    """The settings for pictures in which glossy things show what probes saw, if that is known."""
+    return replace(plain, reflections=known is not None)
 
 
 def _panorama(scene: Scene, probe: Probe, size: tuple[int, int]) -> Panorama:

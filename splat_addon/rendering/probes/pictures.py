@@ -12,14 +12,18 @@ from functools import cache
 import numpy as np
 
 from ..frame import EMPTY_DEPTH, Frame
+from ..scene.camera import Camera
 from ..scene.environment import reflected_lobe
 from ..scene.octahedral import bordered, octahedral_directions
 from .places import Probe
 
-#: Texels along the side of a picture of what reflects sharply, and of what does not.
-SHARP_SIDE, BLUNT_SIDE = 256, 128
-#: From this roughness on, the smaller picture has enough.
-BLUNT_ROUGHNESS = 0.12
+#: Texels along the side of a picture of what reflects sharply and is large, of what reflects sharply, and of what does
+#: not.
+LARGE_SIDE, SHARP_SIDE, BLUNT_SIDE = 512, 256, 128
+#: From this roughness on, the next smaller picture has enough.
+SHARP_ROUGHNESS, BLUNT_ROUGHNESS = 0.06, 0.12
+#: From so many pixels on, a thing is large: in the middle of a mirror ball that wide, texels are as large as pixels.
+LARGE = 288
 #: Each of these maps has half the texels along its side.
 MAPS = 5
 #: Roughness of pictures that are blurred by the lobe; below the first, the maps are looked up.
@@ -29,8 +33,10 @@ LEVEL_SIDE = 32
 HEADER = 4
 
 
-def side_of(probes: tuple[Probe, ...]) -> int:
-    """Texels along the side of the sharp picture of each."""
+def side_of(probes: tuple[Probe, ...], camera: Camera) -> int:
+    """Texels along the side of the sharp picture of each, for a camera."""
+    if any(probe.roughness < SHARP_ROUGHNESS and probe.pixels(camera) > LARGE for probe in probes):
+        return LARGE_SIDE
     return SHARP_SIDE if min(probe.roughness for probe in probes) < BLUNT_ROUGHNESS else BLUNT_SIDE
 
 
@@ -44,15 +50,14 @@ class ProbePictures:
     places are relative to."""
 
     def __init__(self, probes: tuple[Probe, ...], frames: list[Frame]):
-        self.origin = np.array(probes[0].middle)
-        self.side = side_of(probes)
-        self._probes, self._frames = probes, frames
+        self.origin, self.side = np.array(probes[0].middle), len(frames[0].color) - 2
+        self.probes, self._frames = probes, frames
 
     def texels(self) -> np.ndarray:
         """(h, w, 4) float32: a row about the probes, and below one another what each sees."""
         width, height = probe_size(self.side)
-        made = np.zeros((1 + height * len(self._probes), width, 4), np.float32)
-        for number, (probe, frame) in enumerate(zip(self._probes, self._frames, strict=True)):
+        made = np.zeros((1 + height * len(self.probes), width, 4), np.float32)
+        for number, (probe, frame) in enumerate(zip(self.probes, self._frames, strict=True)):
             made[0, HEADER * number : HEADER * (number + 1)] = _header(probe, self.origin)
             _fill(made[1 + height * number :][:height], frame, self.side)
         return made

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -28,12 +28,22 @@ FLATTEST = 0.02
 @dataclass(frozen=True)
 class Probe:
     """middle: (3,) world. axes: (3, 3) rows, half-axes of the box that uses it, world. left_out: rows of the scene's
-    table that its picture lacks. roughness: the least of what uses it."""
+    table that its picture lacks. roughness: the least of what uses it. sees_others: whether anything glossy that is
+    not flat is in its picture."""
 
     middle: tuple[float, ...]
     axes: tuple[tuple[float, ...], ...]
     left_out: tuple[int, ...]
     roughness: float
+    sees_others: bool = False
+
+    def pixels(self, camera: Camera) -> float:
+        """How many pixels the box is wide, at most."""
+        length = 2 * float(np.linalg.norm(self.axes, axis=1).max()) * camera.pixels_per_unit()
+        if camera.is_orthographic:
+            return length
+        away = float(np.linalg.norm(camera.matrix_world[:3, 3] - self.middle))
+        return length / max(away - self.radius, away / 4, 1e-30)
 
     @property
     def radius(self) -> float:
@@ -57,6 +67,7 @@ def probes_of(scene: Scene, camera: Camera) -> tuple[tuple[Probe, ...], int]:
     lengths = np.linalg.norm(axes, axis=2)
     radii = lengths.max(axis=1)
     is_round = (lengths.min(axis=1) > FLATTEST * radii) & ~table.are_flattened
+    mirrors = set(np.flatnonzero(are_glossy & is_round).tolist())
     for chosen in scene.light_probes:
         is_round &= ~_are_in(middles, chosen.middle, np.array(chosen.axes))
     rows = np.flatnonzero(are_glossy & is_round)
@@ -67,7 +78,8 @@ def probes_of(scene: Scene, camera: Camera) -> tuple[tuple[Probe, ...], int]:
     found += [_probe(table, int(row), middles, axes, radii, camera) for row in largest]
     # a surface uses the first one whose box holds it
     kept = sorted(found[:MAX_PROBES], key=lambda probe: probe.radius)
-    return tuple(kept), len(found) - len(kept)
+    kept = (replace(probe, sees_others=bool(mirrors.difference(probe.left_out))) for probe in kept)
+    return tuple(kept), max(len(found) - MAX_PROBES, 0)
 
 
 def _chosen(table: InstanceTable, probe: LightProbe, are_glossy: np.ndarray, middles, axes, radii) -> Probe:
