@@ -67,6 +67,16 @@ def most_demanding(
     return seen + unseen
 
 
+def views_told(depsgraph: bpy.types.Depsgraph) -> tuple:
+    """What the functions above find of the depsgraph, in a form that can be compared."""
+    try:
+        views = _views(depsgraph)
+    except ValueError:
+        return ()
+    pictures = ((view.world_to_view(), *_picture(view).values()) for view in views)
+    return tuple(np.concatenate([np.ravel(value) for value in picture]).tobytes() for picture in pictures)
+
+
 def _views(depsgraph: bpy.types.Depsgraph) -> list[Camera]:
     """Flat cameras that see what the scene's camera sees. Raises ValueError if there is none."""
     camera = final_camera(depsgraph, depsgraph.scene.camera)

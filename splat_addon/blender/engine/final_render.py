@@ -10,6 +10,7 @@ from dataclasses import replace
 from functools import partial
 from time import perf_counter
 from typing import NamedTuple
+from weakref import ref
 
 import bpy
 
@@ -17,6 +18,7 @@ from ...faults import is_worded, sentence_of
 from ...rendering import Camera, Frame, Panorama, RenderCancelled, Renderer, Scene, open_device
 from ..cameras import depth_of_field_notes, rendered_part, view_camera
 from ..doors import unattended, with_handlers
+from ..export.changes import Changes, changes_of
 from ..export.live_meshes import LiveMeshes
 from ..export.notes import Notes
 from ..export.scene import SurfelStore, export_scene
@@ -83,6 +85,7 @@ def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> No
     settings = final_settings(depsgraph.view_layer, depsgraph.scene, outputs_of(depsgraph.view_layer))
     _tell_step(engine, "Reading surfels")
     resources = _acquire_resources()
+    resources.note_changes(engine, depsgraph)
     is_cancelled = False
     try:
         views = [view.name for view in engine.get_result().views]
@@ -171,7 +174,7 @@ def _picture(engine, depsgraph, resources: _Resources, settings, turn: tuple[int
                 go(time)
             yield first if first and time is None else read()
 
-    with moving_time(engine, depsgraph) as go:
+    with moving_time(engine, depsgraph, partial(resources.note_changes, engine, depsgraph)) as go:
         count = max(len(times), 1)
         frame = resources.renderer.render_moments(moments(go), count, settings, told, part, is_repeatable=True)
     if target:
@@ -221,9 +224,11 @@ _FLATTENED = "Objects with a scale of 0 on some axis are left out; give every ax
 
 
 def _read(depsgraph, resources: _Resources):
-    are_edited = resources.are_images_edited
-    resources.store.begin_frame(are_materials_edited=are_edited, is_sky_edited=are_edited)
-    resources.live_meshes.begin_frame()
+    are_edited, changes = resources.are_images_edited, None if resources.are_images_edited else resources.changes
+    geometry = None if changes is None else changes.geometry
+    resources.store.begin_frame(geometry, are_edited, are_edited, are_strokes_told=False)
+    resources.live_meshes.begin_frame(changes)
+    resources.changes = Changes()
     if resources.are_images_edited:
         resources.live_meshes.forget_images()
         resources.are_images_edited = False
@@ -249,7 +254,8 @@ class _Resources:
     they are freed in `render` after the last picture, unless the scene's Persistent Data keeps them. A render that ends
     before the scene's last frame, because of Esc or a shorter range, also leaves them to the next render.
 
-    are_images_edited: whether images may have been edited since the last picture. most: surfels of a sampled mesh.
+    are_images_edited: whether images may have been edited since the last picture. changes: what evaluations changed
+    since the scene was last read; None: anything. most: surfels of a sampled mesh.
     """
 
     def __init__(self, most: int | None = None):
@@ -258,6 +264,15 @@ class _Resources:
         self.live_meshes = LiveMeshes(most)
         self.targets = Targets()
         self.renderer = Renderer(open_device("blender"))
+        self.changes: Changes | None = None
+        self._engine: ref | None = None
+
+    def note_changes(self, engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> None:
+        """Remember what an evaluation changed: Blender forgets it with the next one. The depsgraph is an engine's own;
+        nothing is known of what came before it."""
+        is_followed = self._engine is not None and self._engine() is engine
+        self._engine = ref(engine)
+        self.changes = self.changes | changes_of(depsgraph) if is_followed and self.changes is not None else None
 
 
 _resources: _Resources | None = None

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 import bpy
@@ -36,8 +36,13 @@ def shutter_times(scene: bpy.types.Scene, view_layer: bpy.types.ViewLayer, sampl
 
 
 @contextmanager
-def moving_time(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> Iterator:
-    """Yields go(time), which evaluates the depsgraph at a fractional frame; the frame is restored at the end."""
+def moving_time(
+    engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph, evaluated: Callable[[], None]
+) -> Iterator:
+    """Yields go(time), which evaluates the depsgraph at a fractional frame; the frame is restored at the end.
+
+    evaluated: called after each evaluation.
+    """
     scene = depsgraph.scene
     now = scene.frame_current + scene.frame_subframe
     moved = False
@@ -46,6 +51,7 @@ def moving_time(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) 
         nonlocal moved
         moved = True
         engine.frame_set(math.floor(time), time - math.floor(time))
+        evaluated()
 
     try:
         yield go

@@ -16,6 +16,7 @@ from ...faults import sentence_of
 from ...rendering import Arrival, Pace, Refinement, Renderer, Shown, open_device
 from ..cameras import viewport_camera
 from ..doors import unattended
+from ..export.changes import Changes, changes_of
 from ..export.live_meshes import LiveMeshes
 from ..export.scene import export_scene
 from ..export.sliced_store import SlicedStore
@@ -37,26 +38,19 @@ def guarded(engine: bpy.types.RenderEngine, callback, context, depsgraph) -> Non
 
 
 def update(engine: bpy.types.RenderEngine, context: bpy.types.Context, depsgraph: bpy.types.Depsgraph) -> None:
-    """Read the scene; only meshes whose geometry changed are read again."""
+    """Read the scene; only what changed is read again."""
     state = _state(engine)
-    changed = {u.id.name_full for u in depsgraph.updates if u.is_updated_geometry}
-    changed |= {u.id.data.name_full for u in depsgraph.updates if u.is_updated_geometry and getattr(u.id, "data", None)}
     are_materials_edited = any(depsgraph.id_type_updated(kind) for kind in ("MATERIAL", "NODETREE", "IMAGE"))
     if are_materials_edited:
         state.live_meshes.forget_images()
     # whatever changes with each picture would never be whole
     state.store.is_sliced = state.arrival.loading.is_in_background = not _is_playing(context)
-    _read(state, depsgraph, changed, are_materials_edited, _is_sky_edited(depsgraph))
+    _read(state, depsgraph, changes_of(depsgraph), are_materials_edited)
     if not _only_moves_objects(depsgraph):
         matcap_images.doubt()
     # A multilayer matcap is read through a data-block, which Blender does not allow to be created while drawing.
     viewport_settings(depsgraph.scene)
     _say(engine, state)
-
-
-def _is_sky_edited(depsgraph: bpy.types.Depsgraph) -> bool:
-    """Whether the world's picture may be another one. Blender reports the world if a picture in it was reloaded."""
-    return any(isinstance(update.id, bpy.types.World | bpy.types.Image) for update in depsgraph.updates)
 
 
 def _only_moves_objects(depsgraph: bpy.types.Depsgraph) -> bool:
@@ -66,16 +60,10 @@ def _only_moves_objects(depsgraph: bpy.types.Depsgraph) -> bool:
     )
 
 
-def _read(
-    state: _State,
-    depsgraph: bpy.types.Depsgraph,
-    changed: set[str],
-    are_materials_edited: bool = False,
-    is_sky_edited: bool = False,
-) -> None:
-    """Read the scene; of its meshes only those that are named in `changed`, and more of those that take long."""
-    state.store.begin_frame(changed, are_materials_edited, is_sky_edited)
-    state.live_meshes.begin_frame(None if are_materials_edited else changed)
+def _read(state: _State, depsgraph: bpy.types.Depsgraph, changes: Changes, are_materials_edited: bool = False) -> None:
+    """Read of the scene what changed, and more of the meshes that take long."""
+    state.store.begin_frame(changes.geometry, are_materials_edited, changes.is_sky_edited)
+    state.live_meshes.begin_frame(changes)
     state.scene, notes = export_scene(depsgraph, state.store, state.live_meshes)
     state.store.forget_unused()
     last_notes[:] = notes.sentences()
@@ -114,7 +102,7 @@ def draw(engine: bpy.types.RenderEngine, context: bpy.types.Context, depsgraph: 
     if state.scene is None:
         update(engine, context, depsgraph)
     elif state.store.has_news:
-        _read(state, depsgraph, set())
+        _read(state, depsgraph, Changes())
     state.refinement.renderer.device.most_bytes = most_bytes()
     state.refinement.pace.rate = viewport_rate(depsgraph.scene)
     settings = viewport_settings(depsgraph.scene)

@@ -2,9 +2,8 @@
 """Meshes that are rendered without a conversion: as polygons, or sampled when first seen and followed from frame to
 frame.
 
-Each frame of a final render reads a mesh again, because Blender reports no changes there; the viewport reads it when it
-changed. Unchanged values give the same `Surfels` or `Polygons` object, by which the renderer recognises data already on
-the device.
+A mesh is read again when Blender reports that it or one of its materials changed. Unchanged values give the same
+`Surfels` or `Polygons` object, by which the renderer recognises data already on the device.
 """
 
 from __future__ import annotations
@@ -37,12 +36,14 @@ from ...sampling import (
     projected_area,
 )
 from ...surfels import OPTIONAL_LAYOUT, Surfels
+from ..conversion.animation import is_moving
 from ..conversion.automatic_density import automatic_spacing
-from ..conversion.camera_density import most_demanding, without_camera
+from ..conversion.camera_density import most_demanding, views_told, without_camera
 from ..conversion.mesh_conversion import MAX_SURFELS, stray_triangles
 from ..geometry.reading import readable_mesh
 from ..geometry.sources import mesh_key
 from ..geometry.split_meshes import MeshParts, parts_by_group
+from ..materials.image_files import shows_frames
 from ..materials.slots import slot_materials
 from ..materials.surface_textures import MAPS, kept_maps
 from ..mesh_sampling_settings import Form
@@ -50,6 +51,7 @@ from ..meshes.mesh_extraction import ExtractedMesh, Topology, read_mesh, read_to
 from ..meshes.mesh_polygons import left_out_of_polygons, mesh_polygons, needs_surfels
 from ..object_detail import finer
 from . import passed_over
+from .changes import Changes
 from .holdouts import held_slots, with_holes
 from .notes import Notes
 from .shading import shading_material
@@ -84,9 +86,10 @@ class LiveMesh:
     """One evaluated mesh, with all its places. said: sentences about its materials and its object. bends: whether its
     object has shape keys or modifiers that deform it.
 
-    key: result of `mesh_key` for the evaluation that was read. asked: result of `_asked_of` for it. held: result of
-        `held_slots`. looks: the options of sampling that were chosen, see `looks_of_meshes`. shown: a sampling, and the
-        surfels drawn from it.
+    key: result of `mesh_key` for the evaluation that was read. asked: result of `_asked_of` for it. made_of:
+        session_uids of its materials. has_frames: whether they show an image that is another in each frame. held:
+        result of `held_slots`. looks: the options of sampling that were chosen, see `looks_of_meshes`. settled: for
+        which mesh, and what else, its spacing was found. shown: a sampling, and the surfels drawn from it.
     """
 
     key: tuple = ()
@@ -94,6 +97,8 @@ class LiveMesh:
     topology: Topology | None = None
     content: ExtractedMesh | None = None
     materials: tuple[Material, ...] = ()
+    made_of: frozenset[int] = frozenset()
+    has_frames: bool = False
     held: list[int] = field(default_factory=list)
     maps: dict[str, tuple] = field(default_factory=dict)
     looks: dict[str, bool] = field(default_factory=dict)
@@ -104,6 +109,7 @@ class LiveMesh:
     deforming: DeformingSurfels | None = None
     density: dict[str, float] = field(default_factory=dict)
     spacing: float = 0.0
+    settled: tuple[TriangleMesh | None, tuple] = (None, ())
     surface: tuple[TriangleMesh, Outline] | None = None
     drawn: tuple[TriangleMesh, tuple[Polygons, ...]] | None = None
     parts: MeshParts | None = None
@@ -192,13 +198,19 @@ class LiveMesh:
         self.maps[field] = kept_maps(self.maps.get(field, ()), self.content.triangles.surfaces, field)
         return self.maps[field]
 
-    def spacing_for(self, density: dict[str, float], depsgraph: bpy.types.Depsgraph) -> float:
+    def spacing_for(self, density: dict[str, float], depsgraph: bpy.types.Depsgraph, views: tuple) -> float:
         """Spacing in the mesh's own units: as fine as its most demanding place requests, or unchanged if that is close
-        enough."""
+        enough, or if nothing changed. views: the cameras of the depsgraph, as a value."""
         if density != self.density:
             self.deforming = None
+        asked = self.detail, self.matrices.tobytes(), views
+        is_settled = self.deforming is not None and self.settled[0] is self.whole and self.settled[1] == asked
+        if is_settled:
+            return self.spacing
         ((kind, value),) = density.items()
-        return _SPACINGS[kind](self, value, depsgraph)
+        spacing = _SPACINGS[kind](self, value, depsgraph)
+        self.settled = self.whole, asked
+        return spacing
 
     def kept_if_near(self, spacing: float) -> float:
         is_near = self.deforming and spacing / _TOO_FINE <= self.spacing <= spacing * _TOO_COARSE
@@ -208,9 +220,10 @@ class LiveMesh:
 class LiveMeshes:
     """The meshes of one render or one 3D view.
 
-    counts: about the last frame. "polygon_meshes" and their "triangles": drawn as polygons; "meshes" and their
-        "surfels": sampled meshes. Of the sampled meshes, "sampled" were sampled in this frame and "followed" an earlier
-        sampling; "stretched" counts those sampled again because they had stretched too far.
+    counts: about the last frame. "read": meshes that were read. "polygon_meshes" and their "triangles": drawn as
+        polygons; "meshes" and their "surfels": sampled meshes. Of the sampled meshes, "sampled" were sampled in this
+        frame and "followed" an earlier sampling; "stretched" counts those sampled again because they had stretched too
+        far.
     most: surfels of a mesh; it is sampled coarser if there would be more. Without, more than MAX_SURFELS are refused.
     """
 
@@ -219,14 +232,14 @@ class LiveMeshes:
         self._kept: dict[tuple, LiveMesh] = {}
         self._names: dict[tuple, tuple] = {}
         self._frame: dict[tuple, LiveMesh] = {}
-        self._changed: set[str] | None = None
+        self._changes: Changes | None = None
         self._images: dict = {}
+        self._views: tuple = ()
         self.counts: Counter = Counter()
 
-    def begin_frame(self, changed: set[str] | None = None) -> None:
-        """Start a frame. Meshes named in `changed` (None: all), and meshes that were evaluated again, are read when
-        they are added."""
-        self._changed, self._frame, self._names, self.counts = changed, {}, {}, Counter()
+    def begin_frame(self, changes: Changes | None = None) -> None:
+        """Start a frame. changes: since the one before; None: anything may have changed."""
+        self._changes, self._frame, self._names, self.counts = changes, {}, {}, Counter()
 
     def forget_images(self) -> None:
         """Read textures again after an image or a material was edited."""
@@ -252,12 +265,23 @@ class LiveMeshes:
         if key not in self._frame:
             live = self._kept.setdefault(self._lasting_key(evaluated, form.split_group), LiveMesh())
             live.places, live.owner = [], owner.name
-            is_told = self._changed is None or evaluated.data.name_full in self._changed
-            if live.key != key or is_told or (live.content.asks_owner and live.asked != asked):
+            if live.key != key or self._may_differ(live, evaluated, asked):
+                self.counts["read"] += 1
                 self._read(live, evaluated, form.split_group, override)
                 live.key, live.asked = key, asked
             self._frame[key] = live
         return self._frame[key]
+
+    def _may_differ(self, live: LiveMesh, evaluated: bpy.types.Object, asked: tuple) -> bool:
+        """Whether a mesh, of which nothing was evaluated again, may look different from when it was read."""
+        changes = self._changes
+        if changes is None or changes.are_pixels_edited or live.has_frames:
+            return True
+        # its owner may have been asked for any of its properties
+        if live.content.asks_owner and (live.asked != asked or evaluated.name_full in changes.objects):
+            return True
+        names = evaluated.name_full, evaluated.data.name_full
+        return not changes.geometry.isdisjoint(names) or not changes.materials.isdisjoint(live.made_of)
 
     def instances(
         self, depsgraph: bpy.types.Depsgraph, density: dict[str, float], looks: dict[str, bool], notes
@@ -265,6 +289,7 @@ class LiveMeshes:
         """All instances added to this frame; the places of one mesh share its surfels or polygons. looks: options of
         sampling by name, see `looks_of_meshes`."""
         sampled, drawn = [], []
+        self._views = is_moving(depsgraph.scene.camera), *views_told(depsgraph)
         for live in self._frame.values():
             if not live.places:
                 continue
@@ -340,6 +365,8 @@ class LiveMeshes:
             live.bends = evaluated.original.is_deform_modified(bpy.context.scene, "RENDER")
             live.materials = tuple(shading_material(material, notes, OPTIONAL_LAYOUT) for material in slots)
             live.held = held_slots(slots)
+            live.made_of = frozenset(material.original.session_uid for material in slots if material)
+            live.has_frames = any(map(shows_frames, slots))
         live.said = list(notes.counts.elements())
 
     def _sampled(
@@ -348,7 +375,7 @@ class LiveMeshes:
         """The sampling of a mesh. Raises ValueError with a sentence if it cannot be sampled."""
         if looks != live.looks:
             live.deforming, live.looks = None, looks
-        mesh, spacing = live.sampled_part, live.spacing_for(density, depsgraph)
+        mesh, spacing = live.sampled_part, live.spacing_for(density, depsgraph, self._views)
         if live.deforming is not None and spacing == live.spacing and live.deforming.has_triangles_of(mesh):
             surfels, stretched = live.deforming.at(mesh)
             if stretched <= STRETCHED_SHARE:
@@ -356,7 +383,7 @@ class LiveMeshes:
                 return surfels
             self.counts["stretched"] += 1
             live.deforming = None
-            spacing = live.spacing_for(density, depsgraph)
+            spacing = live.spacing_for(density, depsgraph, self._views)
         predicted = predict_count(mesh, spacing=spacing)
         if self._most is not None and predicted > self._most:
             spacing *= math.sqrt(predicted / self._most)

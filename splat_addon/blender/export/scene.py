@@ -4,7 +4,7 @@ counted."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
@@ -75,8 +75,8 @@ def tell_replaced(before: list[Kept], kept: Kept) -> None:
 class SurfelStore:
     """Keeps the `Surfels` of meshes between frames: the same object as long as the values are unchanged.
 
-    Device data is cached by that identity. The values are compared, because Blender reports no changes in a final
-    render: reading and comparing a million surfels takes a tenth of the time of packing and uploading them.
+    Device data is cached by that identity. The values of what is read again are compared: reading and comparing a
+    million surfels takes a tenth of the time of packing and uploading them.
 
     A mesh is identified by its session_uid: objects that share a mesh but differ in modifiers have evaluated meshes of
     the same name, and each evaluation by modifiers makes a new mesh of the same name.
@@ -101,7 +101,7 @@ class SurfelStore:
         key: session_uid of the mesh or point cloud, or of the mesh that the points were made beside.
         name: identifies it in the next evaluation. offset: of the mesh in the .blend.
         """
-        if key not in self._current:
+        if key not in self._current or self._kept[key].name != name:
             surfels, skipped, strayed = read_stored(points, self._followed, name, is_solid, offset)
             before = [kept for kept in self._kept.values() if kept.name == name]
             kept = next((k for k in before if have_same_values(k.surfels, surfels)), None)
@@ -123,18 +123,22 @@ class SurfelStore:
         return self._columns[key, attribute]
 
     def begin_frame(
-        self, changed: set[str] | None = None, are_materials_edited: bool = False, is_sky_edited: bool = False
+        self,
+        changed: Collection[str] | None = None,
+        are_materials_edited: bool = False,
+        is_sky_edited: bool = False,
+        are_strokes_told: bool = True,
     ) -> None:
         """Start a frame: meshes named in `changed` (None: all) are read again when next requested.
 
         are_materials_edited: whether materials or their images may have been edited. is_sky_edited: the same of the
-            world's.
+            world's. are_strokes_told: whether the former includes pixels that were painted, as in a viewport.
         """
         self.world.begin_frame(is_sky_edited)
         self.derived.begin_frame()
         self.changed_sources.begin_frame(changed is None or bool(changed))
         self.streams.begin_frame()
-        self.textures.begin_frame(are_materials_edited, is_told=changed is not None)
+        self.textures.begin_frame(are_materials_edited, is_told=changed is not None and are_strokes_told)
         self._current = {k for k in self._current if changed is not None and self._kept[k].name not in changed}
         self._columns = {key: column for key, column in self._columns.items() if key[0] in self._current}
 

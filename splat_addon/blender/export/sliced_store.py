@@ -73,8 +73,8 @@ class SlicedStore(SurfelStore):
         """Whether reading can go on."""
         return any(reading.has_news for reading in self._readings.values())
 
-    def begin_frame(self, changed=None, are_materials_edited=False, is_sky_edited=False):
-        super().begin_frame(changed, are_materials_edited, is_sky_edited)
+    def begin_frame(self, changed=None, are_materials_edited=False, is_sky_edited=False, are_strokes_told=True):
+        super().begin_frame(changed, are_materials_edited, is_sky_edited, are_strokes_told)
         self._at_once, self._until, self._requested = AT_ONCE, self._clock() + _SECONDS, set()
         if changed is None:
             self._readings.clear()

@@ -12,6 +12,9 @@ from contextlib import contextmanager
 
 import bpy
 
+from ..geometry.node_groups import nodes_in
+from .node_trees import uses_nodes
+
 #: Sources of images that have one picture, and of those that have several.
 SINGLE, TILED, SEQUENCE = ("FILE", "GENERATED"), "TILED", "SEQUENCE"
 
@@ -31,6 +34,12 @@ def frame_of(image: bpy.types.Image | None, user: bpy.types.ImageUser) -> int | 
     if user.use_cyclic and count:
         frame = frame % count or count
     return min(max(frame, 0), count) + user.frame_offset
+
+
+def shows_frames(material: bpy.types.Material | None) -> bool:
+    """Whether a material has a sequence, which may be another image in each frame, of which Blender tells nothing."""
+    nodes = nodes_in(material.node_tree) if material is not None and uses_nodes(material) else ()
+    return any(node.image.source == SEQUENCE for node in nodes if getattr(node, "image", None))
 
 
 def frame_path(image: bpy.types.Image, frame: int) -> str:

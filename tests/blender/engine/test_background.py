@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from splat_addon.blender.engine import viewport
+from splat_addon.blender.export.changes import changes_of
 from splat_addon.blender.export.notes import Notes
 from splat_addon.blender.export.scene import SurfelStore
 
@@ -187,7 +188,7 @@ def told(scene, add_square, add_picture):
     square.active_material.use_nodes = True
 
     def note(scene, depsgraph):
-        found.append((viewport._is_sky_edited(depsgraph), viewport._only_moves_objects(depsgraph)))
+        found.append((changes_of(depsgraph).is_sky_edited, viewport._only_moves_objects(depsgraph)))
 
     def tell(edit):
         bpy.context.view_layer.update()

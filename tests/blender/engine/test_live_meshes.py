@@ -299,7 +299,13 @@ def test_too_much_stretch_samples_anew_and_says_so(live, sampled, render_frames)
     for frame, value in ((1, 0), (2, 1)):
         key.value = value
         key.keyframe_insert("value", frame=frame)
-    assert render_frames(2) == {"meshes": 1, "surfels": len(sampled[1]), "sampled": 1, "stretched": 1}
+    assert render_frames(2) == {
+        "read": 1,
+        "meshes": 1,
+        "surfels": len(sampled[1]),
+        "sampled": 1,
+        "stretched": 1,
+    }
 
 
 def test_another_topology_is_sampled_anew(live, sampled, render_frames):

@@ -51,6 +51,7 @@ def test_under_an_override_surfels_keep_their_form(scene, add_camera, cube, conv
 
 def test_another_override_takes_the_place_of_the_first_in_a_view(add_square):
     """A view reads a mesh again only if its key is another one."""
+    from splat_addon.blender.export.changes import Changes
     from splat_addon.blender.export.live_meshes import LiveMeshes
     from splat_addon.blender.export.scene import export_scene
     from splat_addon.blender.export.sliced_store import SlicedStore
@@ -59,7 +60,7 @@ def test_another_override_takes_the_place_of_the_first_in_a_view(add_square):
     view_layer, live, colors = bpy.context.view_layer, LiveMeshes(), []
     for color in ((1, 0, 0, 1), (0, 0, 1, 1)):
         view_layer.material_override = material(color, f"paint {color}")
-        live.begin_frame(set())
+        live.begin_frame(Changes())
         scene, _ = export_scene(bpy.context.evaluated_depsgraph_get(), SlicedStore(), live)
         colors.append(tuple(scene.polygons[0].polygons.colors[0]))
     assert colors == [(1, 0, 0, 1), (0, 0, 1, 1)]
