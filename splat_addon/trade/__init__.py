@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What settings cost and gain in one scene: drawn with each of them, and compared with its exact pictures.
 
-scene, camera, settings -> exact pictures -> a row for each choice -> a page, or the choice that keeps a target
+scene, camera, settings -> exact pictures -> a row for each choice -> a page
+scene, camera, settings -> a survey of a few choices -> the choice that keeps a target
 """
 
-from .choices import Choice, choices_for, quick_choices, series_of
+from .choices import Choice, choices_for, series_of
 from .exact import ExactPictures
 from .measuring import Row, measure
 from .page import page
+from .survey import Survey
 from .target import Pace, Promise, Target, chosen
 
 __all__ = (
@@ -16,11 +18,11 @@ __all__ = (
     "Pace",
     "Promise",
     "Row",
+    "Survey",
     "Target",
     "choices_for",
     "chosen",
     "measure",
     "page",
-    "quick_choices",
     "series_of",
 )

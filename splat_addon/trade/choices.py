@@ -4,7 +4,7 @@ contains one number at a time."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 
 from ..rendering import PRESETS, FramePlan, Settings
@@ -12,29 +12,56 @@ from ..rendering import PRESETS, FramePlan, Settings
 #: Samples that each way of filtering a pixel is tried with; of the second, along each side of a pixel.
 BALANCED_SAMPLES, FINAL_EDGES = (1, 2, 4, 8, 16, 32), (2, 3, 4, 6, 8)
 
-#: The values of a number that are tried, if it has another.
-TOLERANCES, SHADOW_RESOLUTIONS, LAYERS = (0.0, 2.0, 4.0), (512, 2048), (2, 4, 8)
+
+@dataclass(frozen=True)
+class Number:
+    """A field of `Settings` that trades time for accuracy beside the samples. values: those that are tried. name: of a
+    value. rank: sorts values, the closest first. of: the pass of frames in which it matters; "" for all frames."""
+
+    field: str
+    values: tuple
+    name: Callable[[object], str]
+    rank: Callable[[object], float]
+    of: str = ""
+
+
+NUMBERS = (
+    Number("detail_tolerance", (0.0, 2.0, 4.0), "Detail Tolerance {:g}".format, lambda pixels: pixels),
+    Number("shadow_resolution", (512, 2048), "Shadow Resolution {}".format, lambda texels: -texels, "shadow_maps"),
+    Number("layers", (2, 4, 8), "{} Layers".format, lambda count: -count, "peel"),
+    Number("storage", ("16-bit",), "Surfel Storage {}".format, lambda name: name != "float32"),
+    Number("sum_format", ("float16",), lambda _: "Blend Precision Float 16", lambda name: name != "float32"),
+)
 
 
 @dataclass(frozen=True)
 class Choice:
     """name: what a person sees. changes: fields of `Settings` with their values. series: choices of one series differ
-    in their number of samples alone."""
+    in their number of samples alone. numbers: fields of `NUMBERS` and their values, where it has others than `plain`,
+    which is the choice without them."""
 
     name: str
     changes: dict = field(hash=False)
     series: str = ""
+    numbers: tuple = ()
+    plain: Choice | None = None
 
     def of(self, settings: Settings) -> Settings:
         """`settings` with the changes."""
         return replace(settings, **self.changes)
+
+    def with_numbers(self, numbers: dict) -> Choice:
+        """This choice with other values of `NUMBERS`. numbers: field -> value."""
+        names = (number.name(numbers[number.field]) for number in NUMBERS if number.field in numbers)
+        name, changes = ", ".join([self.name, *names]), {**self.changes, **numbers}
+        return Choice(name, changes, self.series, tuple(sorted(numbers.items())), self)
 
 
 def choices_for(settings: Settings, plan: FramePlan) -> list[Choice]:
     """What to try, first the settings as they are, and nothing twice. plan: of a frame, which tells what the scene
     contains."""
     found, seen = [], set()
-    for choice in (Choice("As set", {}), *_series(), *_numbers(settings, plan)):
+    for choice in (Choice("As set", {}), *_series(), *_numbers(plan)):
         made = choice.of(settings)
         if made not in seen:
             seen.add(made)
@@ -73,15 +100,13 @@ def with_samples(series: str, values: dict, number: int) -> Choice:
     return Choice(f"{series}, {counted}", {**values, "samples": number}, series)
 
 
-def _numbers(settings: Settings, plan: FramePlan) -> Iterator[Choice]:
-    for tolerance in TOLERANCES:
-        yield Choice(f"Detail Tolerance {tolerance:g}", {"detail_tolerance": tolerance})
+def numbers_in(plan: FramePlan) -> list[Number]:
+    """Those that matter in frames like this one."""
     passes = {each.name for each in plan.passes}
-    if "shadow_maps" in passes:
-        for texels in SHADOW_RESOLUTIONS:
-            yield Choice(f"Shadow Resolution {texels}", {"shadow_resolution": texels})
-    if "peel" in passes:
-        for layers in LAYERS:
-            yield Choice(f"{layers} Layers", {"layers": layers})
-    yield Choice("Surfel Storage 16-bit", {"storage": "16-bit"})
-    yield Choice("Blend Precision Float 16", {"sum_format": "float16"})
+    return [number for number in NUMBERS if number.of in ("", *passes)]
+
+
+def _numbers(plan: FramePlan) -> Iterator[Choice]:
+    for number in numbers_in(plan):
+        for value in number.values:
+            yield Choice(number.name(value), {number.field: value})

@@ -2,18 +2,20 @@
 """Which settings keep an error or a time, by what was measured in the scene.
 
 A series of choices differs in its number of samples alone. Its time is linear in that number, and its error a power of
-it between two that were measured, so numbers in between need not be drawn.
+it between two that were measured, so numbers in between need not be drawn. What other settings do is expected from
+their `effects`, and a choice that has them is drawn before it is promised.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from ..rendering.settings import MAX_SAMPLES, MAX_SUPERSAMPLING
 from .choices import Choice, with_samples
+from .effects import Effects
 from .measuring import Row
 
 
@@ -58,35 +60,96 @@ class Pace:
         self.factor = float(np.median(self._seen))
 
 
-def chosen(rows: Sequence[Row], target: Target, pace: float = 1.0) -> Promise:
+#: A choice with its expected FLIP and seconds.
+_Expected = tuple[Choice, float, float]
+
+#: The share of the error, or of the time, that other settings must gain.
+_LEAST_GAIN = 0.1
+
+
+def chosen(
+    rows: Sequence[Row], target: Target, pace: float = 1.0, effects: Effects | None = None, is_drawn: bool = True
+) -> Promise:
     """The fastest choice that keeps an error, or the closest that keeps a time; the closest or the fastest of all where
-    none does. pace: factor for all times. Raises ValueError without rows."""
-    if not rows:
+    none does. pace: factor for all times. effects: of other settings than samples, which are changed if that gains a
+    tenth. is_drawn: change those only that were measured together. Raises ValueError without rows."""
+    measured = [row for row in rows if not row.choice.numbers]
+    if not measured:
         raise ValueError("Nothing was measured in this scene yet: measure it first.")
-    expected = [(choice, flip, seconds * pace) for choice, flip, seconds in _expected(rows)]
+    plain = list(_expected(measured))
+    best, is_kept = _best(plain, target, pace)
+    if effects is not None:
+        changed = _changed(plain, [row for row in rows if row.choice.numbers], effects, is_drawn)
+        other, is_other_kept = _best([best, *changed], target, pace)
+        # of what is to be small: the time if an error is kept or a time is not, else the error
+        place = 2 if (target.seconds is None) == is_kept else 1
+        if is_other_kept > is_kept or other[place] < (1 - _LEAST_GAIN) * best[place]:
+            best, is_kept = other, is_other_kept
+    choice, flip, seconds = best[0], best[1], best[2] * pace
+    if is_kept:
+        said = f"FLIP {flip:.3f} in {seconds:.2g} s"
+    elif target.seconds is None:
+        said = f"as close as this scene allows, FLIP {flip:.3f}"
+    else:
+        said = f"as fast as this scene allows, {seconds:.2g} s"
+    return Promise(choice, flip, seconds, is_kept, f"{choice.name}: {said}")
+
+
+#: How often a choice is drawn whose effects were only expected. Each takes two pictures.
+_TRIES = 2
+
+
+def settled(
+    rows: list[Row], target: Target, effects: Effects, drawn: Callable[[Choice], Row], pace: float = 1.0
+) -> Promise:
+    """`chosen` with other settings than samples, once they were measured together. drawn: measures a choice; its row is
+    added to `rows`."""
+    for _ in range(_TRIES):
+        promise = chosen(rows, target, pace, effects, is_drawn=False)
+        if not promise.choice.numbers or any(_tells(row.choice, promise.choice) for row in rows):
+            return promise
+        rows.append(drawn(promise.choice))
+    return chosen(rows, target, pace, effects)
+
+
+def _best(expected: Iterable[_Expected], target: Target, pace: float) -> tuple[_Expected, bool]:
+    """The best choice for a target, and whether that is kept."""
+    expected = list(expected)
+    by_time, by_error = (lambda each: (each[2], each[1])), (lambda each: each[1:])
     if target.seconds is None:
         within = [each for each in expected if each[1] <= target.flip]
-        best = min(within, key=_by_time) if within else min(expected, key=_by_error)
-        failing = f"as close as this scene allows, FLIP {best[1]:.3f}"
-    else:
-        within = [each for each in expected if each[2] <= target.seconds]
-        best = min(within, key=_by_error) if within else min(expected, key=_by_time)
-        failing = f"as fast as this scene allows, {best[2]:.2g} s"
-    choice, flip, seconds = best
-    said = f"FLIP {flip:.3f} in {seconds:.2g} s" if within else failing
-    return Promise(choice, flip, seconds, bool(within), f"{choice.name}: {said}")
+        return (min(within, key=by_time), True) if within else (min(expected, key=by_error), False)
+    within = [each for each in expected if each[2] * pace <= target.seconds]
+    return (min(within, key=by_error), True) if within else (min(expected, key=by_time), False)
 
 
-def _by_time(each: tuple) -> tuple:
-    return each[2], each[1]
+def _changed(plain: Sequence[_Expected], drawn: Sequence[Row], effects: Effects, is_drawn: bool) -> Iterator[_Expected]:
+    """The choices with other settings. Those that were measured together correct what is expected of them with another
+    number of samples. is_drawn: leave out the others."""
+    of = {choice: (flip, seconds) for choice, flip, seconds in plain}
+    for choice, flip, seconds in plain:
+        for kind in effects.kinds(choice):
+            made = choice.with_numbers(kind.numbers)
+            alike = [row for row in drawn if row.choice.series == made.series and row.choice.numbers == made.numbers]
+            if is_drawn and not any(_tells(row.choice, made) for row in alike):
+                continue
+            flip_factor = time_factor = 1.0
+            if alike:
+                nearest = min(alike, key=lambda row: abs(np.log(_work(row) / samples_of(made))))
+                own_flip, own_seconds = of[nearest.choice.plain]
+                flip_factor = nearest.flip / kind.flip(own_flip)
+                time_factor = nearest.seconds / (own_seconds * kind.time)
+            yield made, kind.flip(flip) * flip_factor, seconds * kind.time * time_factor
 
 
-def _by_error(each: tuple) -> tuple:
-    return each[1], each[2]
+def _tells(drawn: Choice, other: Choice) -> bool:
+    """Whether a choice that was drawn tells what another will be: it differs in its samples alone, by half at most."""
+    is_alike = (drawn.series, drawn.numbers) == (other.series, other.numbers)
+    return is_alike and 1 / 1.5 <= samples_of(drawn) / samples_of(other) <= 1.5
 
 
-def _expected(rows: Iterable[Row]) -> Iterator[tuple[Choice, float, float]]:
-    """(choice, FLIP, seconds) of what was measured, and of what lies between."""
+def _expected(rows: Iterable[Row]) -> Iterator[_Expected]:
+    """What was measured, and what lies between."""
     series: dict[str, list[Row]] = {}
     for row in rows:
         if row.choice.series:
@@ -110,7 +173,7 @@ def samples_of(choice: Choice) -> int:
 _BEYOND = 4
 
 
-def _between(name: str, rows: list[Row]) -> Iterator[tuple[Choice, float, float]]:
+def _between(name: str, rows: list[Row]) -> Iterator[_Expected]:
     work = np.array([_work(row) for row in rows], float)
     flips = np.maximum([row.flip for row in rows], 1e-6)
     seconds = np.array([row.seconds for row in rows])

@@ -15,7 +15,7 @@ from PIL import Image
 
 from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.metrics import psnr
-from splat_addon.rendering import Equirectangular, Panorama, RenderCancelled, Renderer, Settings, look_at
+from splat_addon.rendering import Equirectangular, Panorama, RenderCancelled, Renderer, Settings, look_at, plan
 from splat_addon.trade import (
     Choice,
     ExactPictures,
@@ -28,8 +28,9 @@ from splat_addon.trade import (
     page,
     series_of,
 )
+from splat_addon.trade.effects import Effects, Kind, tried_beside
 from splat_addon.trade.page import frontier, png
-from splat_addon.trade.target import samples_of
+from splat_addon.trade.target import samples_of, settled
 
 FLAT = Settings(method="mip", shading="flat", outputs=("color",))
 
@@ -136,6 +137,63 @@ def test_pictures_that_take_longer_have_fewer_samples():
     pace.drawn(before.seconds, 2 * before.seconds)
     after = chosen(rows, Target(seconds=16.5), pace.factor)
     assert samples_of(after.choice) == samples_of(before.choice) // 2 and after.seconds <= 16.5
+
+
+class Expected:
+    """Effects that are expected. of: (number, squared, time) of each."""
+
+    def __init__(self, *of):
+        self.of = of
+
+    def kinds(self, choice):
+        return [Kind(*each) for each in self.of]
+
+
+@given(scenes_with_clocks(), st.floats(1, 6), st.floats(0.3, 3), st.floats(0.5, 2), st.booleans())
+def test_a_choice_of_other_settings_is_drawn_before_it_is_promised(truth, room, wrong, slower, is_time):
+    """So its error and its time are kept, however wrong what was expected of it is."""
+    flip, seconds = truth
+    coarse = {"detail_tolerance": 2.0}, 1e-4 * wrong, 0.5 * slower
+
+    def true_flip(choice):
+        return (flip(choice) ** 2 + 1e-4 * bool(choice.numbers)) ** 0.5
+
+    def true_seconds(choice):
+        return seconds(choice) * (0.5 if choice.numbers else 1.0)
+
+    def drawn(choice):
+        return row(choice, true_flip(choice), true_seconds(choice))
+
+    rows = [drawn(choice) for choice in series_of()]
+    closest, fastest = min(r.flip for r in rows), min(r.seconds for r in rows)
+    target = Target(seconds=1.05 * fastest * room) if is_time else Target(flip=closest * room)
+    found = settled(rows, target, Expected(coarse), drawn)
+    assert found.is_kept and (not found.choice.numbers or any(r.choice.numbers == found.choice.numbers for r in rows))
+    if is_time:
+        assert true_seconds(found.choice) <= 1.15 * target.seconds
+    else:
+        assert true_flip(found.choice) <= 1.15 * target.flip
+
+
+def test_effects_are_those_of_single_changes(shot):
+    """A change that moves the picture away adds to the square of its error, one that saves nothing is not tried."""
+    base = Choice("base", {"method": "mip", "samples": 1}, "base")
+    tried = tried_beside(base, FLAT, plan(*shot, FLAT))
+    assert {choice.numbers[0][0] for choice in tried} == {"detail_tolerance", "storage", "sum_format"}
+
+    def picture(grey, choice, seconds):
+        color = np.full((16, 16, 4), grey, np.float32)
+        return replace(row(choice, 0.1, seconds), color=color)
+
+    greys = {"detail_tolerance": 0.7, "storage": 0.5, "sum_format": 0.5}
+    seconds = {"detail_tolerance": 0.5, "storage": 1.0, "sum_format": 1.0}
+    rows = [picture(greys[name], each, seconds[name]) for each in tried for name, _ in each.numbers]
+    kinds = list(Effects(picture(0.5, base, 1.0), rows, FLAT, [base]).kinds(base))
+    assert [kind.numbers for kind in kinds] == [{"detail_tolerance": value} for value in (0.0, 2.0, 4.0)]
+    closer, farther = kinds[0], kinds[1]
+    assert closer.squared < 0 and closer.time == 1.0 and closer.flip(0.1) < 0.1
+    assert farther.squared == -closer.squared and farther.time == 0.5
+    assert farther.flip(0.1) == pytest.approx((0.01 + farther.squared) ** 0.5)
 
 
 def test_the_page_is_whole_and_holds_the_pictures():

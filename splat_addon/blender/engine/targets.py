@@ -3,17 +3,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from time import perf_counter
 from typing import NamedTuple
 
 from ...rendering import Camera, Panorama, Renderer, Scene, Settings
-from ...trade import ExactPictures, Pace, Promise, Row, Target, chosen, measure, quick_choices
+from ...trade import Pace, Promise, Survey, Target
 from ..export.notes import Notes
-
-#: Pictures that the exact one is made from: enough for a FLIP of a few thousandths.
-_PICTURES = 8
 
 
 class Drawing(NamedTuple):
@@ -41,20 +38,25 @@ class Targets:
     """
 
     def __init__(self):
-        self._rows: dict[tuple, list[Row]] = {}
+        self._surveys: dict[tuple, Survey] = {}
         self._pace = Pace()
         self._begun = 0.0
         self.promise: Promise | None = None
 
     def settings_for(self, target: Target, drawing: Drawing, reading: float) -> Settings:
         """The settings that keep the target. reading: seconds that reading the scene took, which count. Raises as
-        `measure`."""
+        `Survey`."""
         # what else a scene that stays on the device may change is left to the correction
-        key = drawing.camera.size, drawing.settings.shading
-        if key not in self._rows:
-            self._rows[key] = list(_measured(drawing))
+        key = drawing.camera.size, drawing.settings.shading, target
+        is_new = key not in self._surveys
+        if is_new:
+            renderer, scene, camera, *_ = drawing
+            told = drawing.share(0.0, 1.0, "measuring the scene")
+            self._surveys[key] = Survey(renderer, scene, camera, drawing.plain(), told)
         left = target if target.seconds is None else Target(seconds=max(target.seconds - reading, 1e-3))
-        self.promise = chosen(self._rows[key], left, self._pace.factor)
+        self.promise = self._surveys[key].promise(left, self._pace.factor)
+        if is_new:
+            self._surveys[key].close()
         self._begun = perf_counter()
         return self.promise.choice.of(drawing.settings)
 
@@ -63,10 +65,3 @@ class Targets:
         self._pace.drawn(self.promise.seconds / self._pace.factor, perf_counter() - self._begun)
         if not self.promise.is_kept:
             notes.add(f"The target cannot be kept. {self.promise.why}")
-
-
-def _measured(drawing: Drawing) -> Iterator[Row]:
-    step, (renderer, scene, camera, *_) = "measuring the scene", drawing
-    told = drawing.share(0.0, 0.5, step), drawing.share(0.5, 1.0, step)
-    exact = ExactPictures.drawn(renderer, scene, camera, drawing.plain(), _PICTURES, told[0])
-    yield from measure(renderer, scene, camera, drawing.plain(), quick_choices(), exact, told=told[1])

@@ -23,7 +23,7 @@ class AimProperties:
                 ERROR,
                 "Target Error",
                 "The fastest picture that is as close to the exact one. The first frame of a render measures the "
-                "scene, which takes about as long as two frames",
+                "scene, which takes about as long as a few frames",
             ),
             (
                 TIME,

@@ -52,10 +52,10 @@ GERMAN = {
     ),
     (
         "The fastest picture that is as close to the exact one. The first frame of a render measures the scene, which "
-        "takes about as long as two frames"
+        "takes about as long as a few frames"
     ): (
         "Das schnellste Bild, das dem exakten so nahe kommt. Das erste Bild eines Renderns misst die Szene, was "
-        "etwa so lange dauert wie zwei Bilder"
+        "etwa so lange dauert wie einige Bilder"
     ),
     (
         "How far a picture may be from the exact one of the same surfels, as its mean perceived difference, from 0 "
