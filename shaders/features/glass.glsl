@@ -20,10 +20,9 @@ vec3 facing_axis_of(vec3 along) {
 }
 
 const int GLASS_CROSSINGS = 10;
-// Boxes that are looked at for one ray, at most: llvmpipe ends all loops of a shader after 65,535 turns.
+// Boxes and leaves that are looked at for one ray, at most: llvmpipe ends all loops of a shader after 65,535 turns.
 const int GLASS_VISITS = 1500;
 const float FAR = 1e30;
-const float THINNEST = 1e-10;  // square of the sine of a triangle's angle, at least
 
 // What a ray meets.
 struct GlassMet {
@@ -49,68 +48,93 @@ vec3 bent(vec3 along, vec3 against, float cosine, float ratio) {
   return normalize(along / ratio + against * (cosine / ratio - sqrt(max(square, 0.0))));
 }
 
-vec4 pane_texel(int number, int first_row) {
-  return texelFetch(glass_surfaces, ivec2(number % GLASS_ROW, first_row + number / GLASS_ROW), 0);
+// Where a block of four texels begins. Shifts, because drivers may divide integers one by one.
+ivec2 pane_place(int block) {
+  return ivec2((block & ((1 << GLASS_ROW_BITS) - 1)) << 2, block >> GLASS_ROW_BITS);
 }
 
-// A triangle or disc, if the ray meets it on the side: 1 where it leaves glass, -1 where it enters. Of discs that overlap
-// the nearest counts, and the others by how near they are to their middles.
-void meet_glass(int number, vec3 from, vec3 along, float side, inout GlassMet met, inout float weights, inout vec3 normals) {
-  int first = number * TEXELS_PER_GLASS, row = int(frame.glass_box_rows);
-  vec4 n0 = pane_texel(first + 3, row), n1 = pane_texel(first + 4, row), n2 = pane_texel(first + 5, row);
-  if (!(n2.w > 0.0)) return;
-  vec4 a = pane_texel(first, row), b = pane_texel(first + 1, row), c = pane_texel(first + 2, row);
-  bool is_disc = n2.w > 1.5;
-  vec3 u = is_disc ? b.xyz : b.xyz - a.xyz, v = is_disc ? c.xyz : c.xyz - a.xyz, flat_normal = cross(u, v);
-  if (is_disc) flat_normal *= sign(dot(flat_normal, n0.xyz));
-  float facing = dot(flat_normal, along);
-  if (!(facing * side > 0.0)) return;
-  float away = dot(flat_normal, a.xyz - from) / facing;
-  if (!(away > 0.0)) return;
-  vec3 at = from + along * away - a.xyz;
-  float uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), au = dot(at, u), av = dot(at, v);
-  float area = dot(flat_normal, flat_normal);
-  if (!(area > THINNEST * uu * vv)) return;
-  vec2 place = vec2(vv * au - uv * av, uu * av - uv * au) / area;
-  float weight = is_disc ? 1.0 - dot(place, place) : min(min(place.x, place.y), 1.0 - place.x - place.y) + 1e-5;
-  if (!(weight >= 0.0)) return;
-  float thick = is_disc ? 0.5 * sqrt(max(uu, vv)) : 0.0;
-  if (away > met.away + thick) return;
-  vec3 normal = is_disc ? n0.xyz : n0.xyz * (1.0 - place.x - place.y) + n1.xyz * place.x + n2.xyz * place.y;
-  if (away < met.away - thick) { weights = 0.0; normals = vec3(0.0); }
-  weights += weight;
-  normals += is_disc ? normal * weight : normal;
-  if (away < met.away) met = GlassMet(away, vec3(0.0), vec3(a.w, b.w, c.w), n0.w, n1.w);
+vec4 pane_texel(ivec2 place, int number) {
+  return texelFetch(glass_surfaces, place + ivec2(number, 0), 0);
 }
 
-// What a ray meets first of what is on its side.
+// Three numbers from -1 to 1, as bytes of one.
+vec3 unpacked(float bytes) {
+  vec2 rest = floor(bytes / vec2(256.0, 65536.0));
+  return vec3(bytes - 256.0 * rest.x, rest.x - 256.0 * rest.y, rest.y) / 127.5 - 1.0;
+}
+
+// Where a ray enters a box, FAR if it does not before an end, or if nothing in it faces that way.
+float enters_box(vec4 low, vec4 high, vec3 from, vec3 inverse, vec3 facing, float end) {
+  vec3 one = (low.xyz - from) * inverse, other = (high.xyz - from) * inverse;
+  vec3 first = min(one, other), last = max(one, other);
+  float enters = max(max(first.x, first.y), max(first.z, 0.0)), leaves = min(min(last.x, last.y), last.z);
+  bool faces = dot(max(unpacked(low.w) * facing, unpacked(high.w) * facing), vec3(1.0)) > 0.0;
+  return faces && low.x <= high.x && enters <= leaves * 1.00001 + 1e-6 && enters <= end ? enters : FAR;
+}
+
+// Up to the nearest node whose sibling is still to be looked at, and on to that; 0 behind the last.
+void next_pane(inout int node, inout int waiting) {
+  int up = (floatBitsToInt(float(waiting & -waiting)) >> 23) - 127;  // the lowest bit is a power of two, and so exact
+  node = waiting == 0 ? 0 : (node >> up) ^ 1;
+  waiting = waiting == 0 ? 0 : (waiting >> up) ^ 1;
+}
+
+// What a ray meets first of what is on its side: 1 where it leaves glass, -1 where it enters. Of discs that overlap the
+// nearest counts, and the others by how near they are to their middles.
 GlassMet met_glass(vec3 from, vec3 along, float side) {
-  GlassMet met = GlassMet(FAR, vec3(0.0), vec3(1.0), 1.0, 0.0);
-  vec3 inverse = 1.0 / mix(along, vec3(1e-20), lessThan(abs(along), vec3(1e-20)));
-  int leaves = int(frame.glass_leaves), node = 1;
-  float weights = 0.0;
-  vec3 normals = vec3(0.0);
-  for (int visits = 0; visits < GLASS_VISITS; visits++) {
-    vec3 low = pane_texel(2 * node, 0).xyz, high = pane_texel(2 * node + 1, 0).xyz;
-    bool is_empty = low.x > high.x;
-    low = (low - from) * inverse;
-    high = (high - from) * inverse;
-    vec3 first = min(low, high), last = max(low, high);
-    float enters = max(max(first.x, first.y), max(first.z, 0.0)), leaves_at = min(min(last.x, last.y), last.z);
-    if (!is_empty && enters <= leaves_at * 1.00001 + 1e-6 && enters <= met.away) {
-      if (node < leaves) {
-        node *= 2;
-        continue;
+  vec3 inverse = 1.0 / mix(along, vec3(1e-20), lessThan(abs(along), vec3(1e-20))), normals = vec3(0.0);
+  vec3 facing = along * side;
+  // bits of `waiting` tell for the node and those above it whether their siblings are still to be looked at
+  int leaves = int(frame.glass_leaves), node = 1, waiting = 0, nearest = -1;
+  int visits = 0;
+  float away = FAR;
+  vec2 place = vec2(0.0);
+  while (node > 0 && visits < GLASS_VISITS) {
+    for (; node > 0 && node < leaves && visits < GLASS_VISITS; visits++) {
+      ivec2 boxes = pane_place(node);
+      float left = enters_box(pane_texel(boxes, 0), pane_texel(boxes, 1), from, inverse, facing, away);
+      float right = enters_box(pane_texel(boxes, 2), pane_texel(boxes, 3), from, inverse, facing, away);
+      if (min(left, right) < FAR) {
+        node = 2 * node + int(right < left);
+        waiting = 2 * waiting + int(max(left, right) < FAR);
+      } else {
+        next_pane(node, waiting);
       }
-      int number = (node - leaves) * GLASS_LEAF;
-      for (int k = 0; k < GLASS_LEAF; k++) meet_glass(number + k, from, along, side, met, weights, normals);
     }
-    // to the next node that is not below this one; behind the last there is none
-    node += 1;
-    node /= node & -node;
-    if (node == 1) break;
+    if (node < leaves) break;
+    int first = leaves + (node - leaves) * GLASS_LEAF, last = first + GLASS_LEAF;
+    for (int block = first; block < last; block++) {
+      ivec2 at = pane_place(block);
+      vec4 plane = pane_texel(at, 0);
+      float turned = dot(plane.xyz, along), distance = -(dot(plane.xyz, from) + plane.w) / turned;
+      if (!(turned * side > 0.0 && distance > 0.0 && distance < FAR)) continue;
+      vec4 across = pane_texel(at, 1), up = pane_texel(at, 2);
+      vec3 meets = from + along * distance;
+      vec2 here = vec2(dot(across.xyz, meets) + across.w, dot(up.xyz, meets) + up.w);
+      if (!(max(abs(here.x), abs(here.y)) <= 1.0)) continue;
+      vec4 normal = pane_texel(at, 3);  // with half the length of a disc's half-axis; 0 for a triangle
+      float weight = min(min(here.x, here.y), 1.0 - here.x - here.y) + 1e-5;
+      if (normal.w > 0.0) weight = 1.0 - dot(here, here);
+      if (!(weight >= 0.0) || distance > away + normal.w) continue;
+      if (distance < away - normal.w) normals = vec3(0.0);
+      normals += normal.xyz * weight;
+      if (distance < away) {
+        away = distance;
+        nearest = block;
+        place = here;
+      }
+    }
+    next_pane(node, waiting);
+    visits++;
   }
-  met.normal = normals;
+  GlassMet met = GlassMet(away, normals, vec3(1.0), 1.0, 0.0);
+  if (nearest < 0) return met;
+  ivec2 more = pane_place(nearest + leaves * GLASS_LEAF);
+  vec4 first = pane_texel(pane_place(nearest), 3), second = pane_texel(more, 0), third = pane_texel(more, 1);
+  if (!(first.w > 0.0)) met.normal = mix(first.xyz, second.xyz, place.x) + (third.xyz - first.xyz) * place.y;
+  met.ior = second.w;
+  met.roughness = third.w;
+  met.tint = pane_texel(more, 2).xyz;
   return met;
 }
 
@@ -216,91 +240,115 @@ vec4 behind_mapped(vec2 place, float texel) {
   return number > float(finer) ? mix(seen, behind_at(finer + 1, place), number - float(finer)) : seen;
 }
 
-// What a ray may meet. texel: the angle that is looked up, and that beyond a distance.
+// A ray along which light is looked for.
 struct GlassRay {
   vec3 from;
   vec3 along;
   float reach;  // FAR without an end
-  vec2 texel;
+  vec2 texel;  // the angle that is looked up, and that beyond a distance
   float beyond;
 };
 
-// The light that a ray meets in the picture; whether it meets any. is_open: whether it ends before nothing.
-bool seen_along(GlassRay ray, out vec3 light, out bool is_open) {
+// The light that a ray meets in the picture or, if it ends beyond all glass, in the probes and the world; whether it
+// meets any. place: of the surface that is lit, view space.
+bool light_along(GlassRay ray, bool looks, bool ends, vec3 place, out vec3 light) {
   vec3 start = (frame.from_glass * vec4(ray.from, 1.0)).xyz, way = mat3(frame.from_glass) * ray.along, found;
-  is_open = false;
-  light = vec3(0.0);
-  if (!(view.is_parallel > 0.5) && !(start.z < 0.0)) return false;
   vec3 first = in_picture(start);
-  if (any(lessThan(first.xy, vec2(0.0))) || any(greaterThan(first.xy, frame.glass_size))) return false;
-  GlassWay stretch = picture_way(start, way, ray.reach);
-  if (!met_in_picture(stretch, found, is_open)) {
-    is_open = is_open && ray.reach >= FAR && way.z < 0.0 && way_depth(stretch.end) >= 0.5 * FAR;
-    return false;
+  vec4 seen = vec4(0.0);
+  float roughness = roughness_of(ray.texel.y);
+  bool is_met = false, is_open = false;
+  looks = looks && (view.is_parallel > 0.5 || start.z < 0.0) && all(greaterThanEqual(first.xy, vec2(0.0)));
+  if (looks && all(lessThanEqual(first.xy, frame.glass_size))) {
+    GlassWay stretch = picture_way(start, way, ray.reach);
+    is_met = met_in_picture(stretch, found, is_open);
+    if (is_met) {
+      float away = abs(found.z + start.z) / max(abs(way.z), 0.1 * frame.glass_scale);
+      float texel = away > ray.beyond ? ray.texel.y : ray.texel.x, depth = view.is_parallel > 0.5 ? 1.0 : found.z;
+      seen = behind_mapped(found.xy, texel * away * frame.glass_scale / depth * frame.glass_window.w);
+      roughness = roughness_of(texel);
+    } else {
+      is_open = is_open && way.z < 0.0 && way_depth(stretch.end) >= 0.5 * FAR;
+    }
   }
-  float away = abs(found.z + start.z) / max(abs(way.z), 0.1 * frame.glass_scale);
-  float texel = away > ray.beyond ? ray.texel.y : ray.texel.x, depth = view.is_parallel > 0.5 ? 1.0 : found.z;
-  vec4 seen = behind_mapped(found.xy, texel * away * frame.glass_scale / depth * frame.glass_window.w);
   light = seen.rgb;
-  if (seen.a < 1.0) light += (1.0 - seen.a) * sent_reflection(normalize(way), roughness_of(texel));
-  return true;
-}
-
-// Light from beyond all glass. place: of the surface that is lit, view space.
-vec3 light_along(GlassRay ray, vec3 place) {
-  vec3 light;
-  bool is_open;
-  if (seen_along(ray, light, is_open)) return light;
-  vec3 direction = normalize(mat3(frame.from_glass) * ray.along);
-  if (is_open) return sent_reflection(direction, roughness_of(ray.texel.y));
-  vec3 away = (frame.from_glass * vec4(ray.from, 1.0)).xyz - place;
-  return world_through(away, direction, roughness_of(ray.texel.y));
+  if (is_met || is_open) {
+    if (seen.a < 1.0) light += (1.0 - seen.a) * sent_reflection(normalize(way), roughness);
+    return is_met || ends;
+  }
+  if (ends) light = world_through(start - place, normalize(way), roughness);
+  return ends;
 }
 
 const int GLASS_TAPS = 12;
 const float GOLDEN_TURN = 2.39996323;
 // From this spread on, radians, rays are told apart.
 const float FROSTED = 0.01;
+// A ray that keeps less of its light crosses no more surfaces.
+const float GLASS_LEAST = 0.01;
 
-// What a rough surface lets through around a ray, whose spread is that of its lobe (GGX), with long tails. Rays have
-// equal shares of it, and each is as wide as its share. more: square of the spread beyond a distance.
-vec3 light_around(GlassRay ray, float spread, float more, vec3 place) {
-  vec3 u = facing_axis_of(ray.along), v = cross(ray.along, u), along = ray.along, total = vec3(0.0);
-  for (int i = 0; i < GLASS_TAPS; i++) {
-    float within = (float(i) + 0.5) / float(GLASS_TAPS), turn = float(i) * GOLDEN_TURN + frame.glass_turn;
-    float slope = spread * sqrt(within / (1.0 - within));
-    float side = 1.77245385 * (slope * slope + spread * spread) / (spread * sqrt(float(GLASS_TAPS)));
-    ray.along = normalize(along + slope * (u * cos(turn) + v * sin(turn)));
-    ray.texel = vec2(side, sqrt(side * side + more));
-    total += light_along(ray, place);
-  }
-  return total / float(GLASS_TAPS);
+// One of the rays into which a rough surface parts one, whose spread is that of its lobe (GGX), with long tails. They
+// have equal shares of it, and each is as wide as its share. more: square of the spread beyond a distance.
+GlassRay parted(GlassRay ray, int number, float spread, float more) {
+  vec3 u = facing_axis_of(ray.along), v = cross(ray.along, u);
+  float within = (float(number) + 0.5) / float(GLASS_TAPS), turn = float(number) * GOLDEN_TURN + frame.glass_turn;
+  float slope = spread * sqrt(within / (1.0 - within));
+  float side = 1.77245385 * (slope * slope + spread * spread) / (spread * sqrt(float(GLASS_TAPS)));
+  ray.along = normalize(ray.along + slope * (u * cos(turn) + v * sin(turn)));
+  ray.texel = vec2(side, sqrt(side * side + more));
+  return ray;
 }
 
+float most_of(vec3 color) {
+  return max(max(color.r, color.g), color.b);
+}
+
+// One loop follows a ray, and then looks along those into which a rough surface has parted it: drivers copy functions to
+// each of their calls.
 vec3 through_glass(vec3 position, vec3 normal) {
   vec3 eye = view.is_parallel > 0.5 ? vec3(0.0, 0.0, -1.0) : normalize(position);
   vec3 from = (frame.to_glass * vec4(position, 1.0)).xyz;
   vec3 along = normalize(mat3(frame.to_glass) * eye), facing = normalize(mat3(frame.to_glass) * normal);
   float root = sqrt(clamp(glass_material.z, 0.0, 0.98)), ior = (1.0 + root) / (1.0 - root);
   float alpha = glass_material.x * glass_material.x, spread2 = alpha * alpha * (ior - 1.0) * (ior - 1.0) / (ior * ior);
+  // what its other surfaces reflect of rough glass is spread too, and comes from all around
+  GlassRay around = GlassRay(from, facing, FAR, vec2(2.0), FAR), before = around, ray;
   if (dot(facing, along) > -1e-3) facing = normalize(facing - along * (dot(facing, along) + 1e-3));
   along = bent(along, facing, -dot(facing, along), ior);
-  vec3 share = glass_tint, lost = vec3(0.0), seen;
+  vec3 share = glass_tint, lost = vec3(0.0), light = vec3(0.0), seen;
   float side = 1.0, frosted2 = 0.0;
-  bool is_open = false;
-  GlassRay before;  // where a rough surface has been left
-  for (int i = 0; i < GLASS_CROSSINGS; i++) {
-    GlassMet met = met_glass(from, along, side);
-    if (frosted2 == 0.0) {
-      if (side < 0.0 && spread2 > FROSTED * FROSTED) {
+  int part = -1;  // the next of the rays into which it has been parted; -1 as long as one is followed
+  for (int i = 0; i < GLASS_CROSSINGS + GLASS_TAPS + 2; i++) {
+    GlassMet met = GlassMet(FAR, vec3(0.0), vec3(1.0), 1.0, 0.0);
+    bool looks = true, ends = true;
+    vec3 counts = share;
+    if (part < 0) {
+      if (i < GLASS_CROSSINGS && most_of(share) > GLASS_LEAST) met = met_glass(from, along, side);
+      if (frosted2 == 0.0 && side < 0.0 && spread2 > FROSTED * FROSTED) {
         frosted2 = spread2;
         before = GlassRay(from, along, FAR, vec2(0.0), met.away);
-      } else {
-        vec2 texel = vec2(GLASS_TEXEL * sqrt(spread2));
-        if (seen_along(GlassRay(from, along, met.away, texel, FAR), seen, is_open)) return share * seen;
       }
+      ends = met.away >= FAR;
+      looks = frosted2 == 0.0;
+      ray = GlassRay(from, along, met.away, vec2(GLASS_TEXEL * sqrt(spread2)), FAR);
+      if (ends && !looks) part = 0;
     }
-    if (met.away >= FAR) break;
+    if (part == GLASS_TAPS) {
+      ray = around;
+      counts = lost;
+      looks = false;
+    } else if (part >= 0) {
+      ray = parted(before, part, sqrt(frosted2), max(spread2 - frosted2, 0.0));
+      counts = share / float(GLASS_TAPS);
+      looks = true;
+    }
+    bool is_done = false;
+    if (looks || part >= 0) is_done = light_along(ray, looks, ends, position, seen);
+    if (is_done) {
+      light += counts * seen;
+      if (part < 0 || part == GLASS_TAPS) break;
+      part++;
+      continue;
+    }
     from += along * met.away;
     vec3 against = met.normal * inversesqrt(max(dot(met.normal, met.normal), 1e-20));
     if (dot(against, along) > 0.0) against = -against;
@@ -317,16 +365,7 @@ vec3 through_glass(vec3 position, vec3 normal) {
     spread2 = spread2 / (ratio * ratio) + bends * bends / (side > 0.0 ? 1.0 : ratio * ratio);
     side = -side;
   }
-  if (frosted2 > 0.0) {
-    // what its other surfaces reflect is spread too, and comes from all around
-    return lost * world_through(vec3(0.0), normal, 1.0)
-        + share * light_around(before, sqrt(frosted2), max(spread2 - frosted2, 0.0), position);
-  }
-  vec3 direction = normalize(mat3(frame.from_glass) * along);
-  float roughness = roughness_of(GLASS_TEXEL * sqrt(spread2));
-  if (is_open) return share * sent_reflection(direction, roughness);
-  vec3 away = (frame.from_glass * vec4(from, 1.0)).xyz - position;
-  return share * world_through(away, direction, roughness);
+  return light;
 }
 
 void glass_dim(inout Lobe lobe, vec3 base, float metallic) {

@@ -137,7 +137,9 @@ def test_each_primitive_is_in_the_tree_once_and_in_the_boxes_above_it():
     leaf, place = np.nonzero(rows >= 0)
     middles = surfaces.corners[rows[leaf, place], 0]
     boxes = surfaces.low[surfaces.leaves + leaf], surfaces.high[surfaces.leaves + leaf]
-    assert (boxes[0] <= middles).all() and (middles <= boxes[1]).all()
+    assert (boxes[0][:, :3] <= middles).all() and (middles <= boxes[1][:, :3]).all()
+    facing = surfaces.normals[rows[leaf, place], 0]  # of discs, their own
+    assert (boxes[0][:, 3:] <= facing + 0.05).all() and (facing - 0.05 <= boxes[1][:, 3:]).all()
 
 
 def test_a_ray_meets_the_side_on_which_it_enters_or_leaves():

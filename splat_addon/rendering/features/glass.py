@@ -12,7 +12,7 @@ from ..plan.hosts import LIT_HOSTS
 from ..plan.planning import any_of
 from ..probes.flat_pictures import PICTURE_MAPS
 from ..probes.glass import has_glass
-from ..scene.glass_surfaces import LEAF, ROW, TEXELS_PER_PRIMITIVE
+from ..scene.glass_surfaces import LEAF, ROW_BITS
 
 
 def glass(planning) -> bool:
@@ -59,7 +59,6 @@ VALUES = {
     "glass_scale": ("float", lambda tile: tile.view.scale),
     "glass_turn": ("float", lambda tile: _TURN * tile.camera.sample % (2 * math.pi)),
     "glass_leaves": ("float", lambda tile: tile.shared.glass.surfaces.leaves),
-    "glass_box_rows": ("float", lambda tile: tile.shared.glass.surfaces.box_rows),
 }
 INPUTS = {
     "glass_picture": lambda tile: tile.resources.kept(tile.shared.glass, tile.shared.glass.behind),
@@ -68,8 +67,7 @@ INPUTS = {
 CONSTANTS = {
     "PICTURE_MAPS": PICTURE_MAPS,
     "GLASS_LEAF": LEAF,
-    "GLASS_ROW": ROW,
-    "TEXELS_PER_GLASS": TEXELS_PER_PRIMITIVE,
+    "GLASS_ROW_BITS": ROW_BITS,
 }
 
 

@@ -17,12 +17,12 @@ from .scene import Placed
 
 #: Triangles or discs in a leaf.
 LEAF = 4
-#: Texels of each, and of a box.
-TEXELS_PER_PRIMITIVE, TEXELS_PER_BOX = 6, 2
-#: Texels in a row of the texture: a whole number of primitives, and of boxes.
-ROW = 1536
+#: Two to this power blocks of four texels are a row of the texture.
+ROW_BITS = 9
 #: More are left out: their texture would take a quarter of a gigabyte.
 MOST_PRIMITIVES = 1 << 21
+#: Square of the sine of a triangle's angle, at least; of one that is thinner nothing is met.
+_THINNEST = 1e-10
 #: A box of nothing begins here and ends at the negative of it.
 _OUTSIDE = 1e30
 
@@ -33,8 +33,8 @@ class GlassSurfaces:
 
     origin: (3,) float64, what places are relative to. corners: (N, 3, 3) float32 of a triangle, or a disc's middle and
     half-axes. normals: (N, 3, 3) for shading, a disc's three times. are_discs: (N,) bool. tints: (N, 3) what a crossing
-    keeps of light. iors, roughness: (N,). order: (L,) primitives, leaf by leaf, -1 for none. low, high: (2 L / LEAF, 3)
-    the boxes of the tree; row 0 is nothing. without: how many there was no room for.
+    keeps of light. iors, roughness: (N,). order: (L,) primitives, leaf by leaf, -1 for none. low, high: (2 L / LEAF, 6)
+    the boxes of the tree, and of their own normals; row 0 is nothing. without: how many there was no room for.
     """
 
     origin: np.ndarray
@@ -61,7 +61,7 @@ class GlassSurfaces:
             count += found
             parts.append(_primitives(placed, which, origin))
         arrays = [np.concatenate(column) for column in zip(*(parts or [_NOTHING]), strict=True)]
-        return cls(origin, *arrays, *_tree(*_boxes(*arrays[:3:2])), without)
+        return cls(origin, *arrays, *_tree(*_boxes(*arrays[:3])), without)
 
     @property
     def leaves(self) -> int:
@@ -69,33 +69,50 @@ class GlassSurfaces:
         return len(self.low) // 2
 
     def texels(self) -> np.ndarray:
-        """(h, ROW, 4) float32: the boxes, two texels each, and in the rows behind them the primitives of the leaves."""
-        boxes = np.zeros((len(self.low), TEXELS_PER_BOX, 4), np.float32)
-        boxes[:, 0, :3], boxes[:, 1, :3] = self.low, self.high
-        primitives = np.zeros((len(self.order), TEXELS_PER_PRIMITIVE, 4), np.float32)
+        """(h, w, 4) float32: blocks of four texels. Each node has one with the boxes of its two children; then come the
+        places of the leaves' primitives, and behind them what else these have."""
+        boxes = np.stack([self.low, self.high], axis=1)
+        boxes[:, 0, 3], boxes[:, 1, 3] = _packed(self.low[:, 3:], np.floor), _packed(self.high[:, 3:], np.ceil)
+        boxes = boxes[..., :4].reshape(-1, 4, 4)
         rows = np.flatnonzero(self.order >= 0)
+        places, rest = len(boxes) + rows, len(boxes) + len(self.order) + rows
+        blocks = len(boxes) + 2 * len(self.order)
+        made = np.zeros((-(-blocks >> ROW_BITS) << ROW_BITS, 4, 4), np.float32)
         of = self.order[rows]
-        primitives[rows, :3, :3], primitives[rows, 3:, :3] = self.corners[of], self.normals[of]
-        primitives[rows, :3, 3] = self.tints[of]
-        primitives[rows, 3, 3], primitives[rows, 4, 3] = self.iors[of], self.roughness[of]
-        primitives[rows, 5, 3] = np.where(self.are_discs[of], 2.0, 1.0)
-        return np.concatenate([_in_rows(boxes), _in_rows(primitives)])
-
-    @property
-    def box_rows(self) -> int:
-        """Rows of the texture that hold boxes."""
-        return _rows(len(self.low) * TEXELS_PER_BOX)
+        planes, sizes = _planes(self.corners[of], self.normals[of, 0], self.are_discs[of])
+        made[: len(boxes)] = boxes
+        made[places, :3], made[places, 3, :3] = planes, self.normals[of, 0]
+        made[places, 3, 3] = np.where(self.are_discs[of], sizes / 2, 0.0)
+        made[rest, :2, :3], made[rest, 2, :3] = self.normals[of, 1:], self.tints[of]
+        made[rest, 0, 3], made[rest, 1, 3] = self.iors[of], self.roughness[of]
+        return made.reshape(-1, 4 << ROW_BITS, 4)
 
 
-def _rows(texels: int) -> int:
-    return -(-texels // ROW)
+def _planes(corners, normals, are_discs) -> tuple[np.ndarray, np.ndarray]:
+    """(n, 3, 4) rows that map a place to its height over a triangle or disc and to its coordinates there (Baldwin and
+    Weber, "Fast Ray-Triangle Intersections by Coordinate Transformation", JCGT 2016), 0 for one without an area; (n,)
+    the longer of its sides from its first corner, or half-axes."""
+    corners = np.asarray(corners, np.float64)
+    first, (sides, flat) = corners[:, 0], _sides(corners, normals, are_discs)
+    squares, area = (sides**2).sum(axis=2), (flat**2).sum(axis=1)
+    made = np.zeros((len(corners), 3, 4))
+    is_open = area > _THINNEST * squares.prod(axis=1)
+    flat, sides, area = flat[is_open], sides[is_open], area[is_open, None]
+    rows = np.stack([flat / np.sqrt(area), np.cross(sides[:, 1], flat) / area, np.cross(flat, sides[:, 0]) / area], 1)
+    made[is_open, :, :3], made[is_open, :, 3] = rows, -(rows @ first[is_open, :, None])[..., 0]
+    return made, np.sqrt(squares.max(axis=1))
 
 
-def _in_rows(texels: np.ndarray) -> np.ndarray:
-    flat = texels.reshape(-1, 4)
-    made = np.zeros((_rows(len(flat)) * ROW, 4), np.float32)
-    made[: len(flat)] = flat
-    return made.reshape(-1, ROW, 4)
+def _sides(corners, normals, are_discs) -> tuple[np.ndarray, np.ndarray]:
+    """(n, 2, 3) sides from the first corner, or half-axes, and (n, 3) their product, on the side of a disc's normal."""
+    sides = corners[:, 1:] - np.where(are_discs, 0.0, 1.0)[:, None, None] * corners[:, :1]
+    flat = np.cross(sides[:, 0], sides[:, 1])
+    return sides, flat * np.where(are_discs & ((flat * normals).sum(axis=1) < 0), -1.0, 1.0)[:, None]
+
+
+def _packed(facing: np.ndarray, rounded) -> np.ndarray:
+    """(n,) three numbers from -1 to 1 as bytes of one that float32 holds exactly."""
+    return rounded((np.clip(facing, -1, 1) + 1) * 127.5) @ (1, 256, 65536)
 
 
 def _origin_of(placed: list[Placed]) -> np.ndarray:
@@ -153,13 +170,15 @@ def _bent(normals: np.ndarray, linear: np.ndarray) -> np.ndarray:
     return made / np.maximum(np.linalg.norm(made, axis=1, keepdims=True), 1e-30)
 
 
-def _boxes(corners: np.ndarray, are_discs: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(N, 3) low and high corners of boxes around the primitives."""
+def _boxes(corners, normals, are_discs) -> tuple[np.ndarray, np.ndarray]:
+    """(N, 6) low and high corners of boxes around the primitives, and their own normals twice."""
     low, high = corners.min(axis=1), corners.max(axis=1)
     discs = corners[are_discs]
     reach = np.sqrt((discs[:, 1:] ** 2).sum(axis=1))
     low[are_discs], high[are_discs] = discs[:, 0] - reach, discs[:, 0] + reach
-    return low, high
+    _, facing = _sides(corners, normals[:, 0], are_discs)
+    facing /= np.maximum(np.linalg.norm(facing, axis=1, keepdims=True), 1e-300)
+    return np.concatenate([low, facing], axis=1), np.concatenate([high, facing], axis=1)
 
 
 def _tree(low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -170,7 +189,7 @@ def _tree(low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray, np
     order = np.full(leaves * LEAF, -1)
     order[: len(low)] = np.arange(len(low))
     # what is not there comes last, wherever it is parted
-    middles = np.concatenate([(low + high) / 2, np.full((1, 3), np.inf)])
+    middles = np.concatenate([(low + high)[:, :3] / 2, np.full((1, 3), np.inf)])
     nodes = 1
     while nodes < leaves:
         each = order.reshape(nodes, -1)
@@ -183,10 +202,10 @@ def _tree(low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray, np
         nodes *= 2
     ends = []
     for values, nothing, of in ((low, _OUTSIDE, np.min), (high, -_OUTSIDE, np.max)):
-        level = of(np.concatenate([values, np.full((1, 3), nothing)])[order].reshape(leaves, LEAF, 3), axis=1)
+        level = of(np.concatenate([values, np.full((1, 6), nothing)])[order].reshape(leaves, LEAF, 6), axis=1)
         levels = [level]
         while len(level) > 1:
-            level = of(level.reshape(-1, 2, 3), axis=1)
+            level = of(level.reshape(-1, 2, 6), axis=1)
             levels.append(level)
-        ends.append(np.concatenate([np.full((1, 3), nothing), *levels[::-1]]))
+        ends.append(np.concatenate([np.full((1, 6), nothing), *levels[::-1]]))
     return order, *ends
