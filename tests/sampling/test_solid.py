@@ -8,6 +8,7 @@ import pytest
 import trimesh
 
 from splat_addon.sampling import TriangleMesh
+from splat_addon.sampling.mesh.connectivity import connectivity
 from splat_addon.sampling.mesh.solid import is_solid
 
 
@@ -70,3 +71,12 @@ def test_the_armadillo_is_solid_and_the_bunny_is_not(models):
         with gzip.open(models / f"{name}.obj.gz") as file:
             shape = trimesh.load(file, file_type="obj", process=False, force="mesh")
         assert is_solid(of(shape)) is expected
+
+
+def test_what_is_connected_is_found_once_for_a_mesh_and_anew_for_some_of_its_triangles():
+    mesh = joined(SPHERE, FAR)
+    assert connectivity(mesh) is connectivity(mesh)
+    parts = connectivity(mesh).parts
+    assert len(np.unique(parts)) == 2
+    some = mesh.with_triangles(np.flatnonzero(parts == parts[0]))
+    assert len(np.unique(connectivity(some).parts)) == 1

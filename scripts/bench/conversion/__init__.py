@@ -12,6 +12,7 @@ a tree.
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import replace
 from functools import partial
 
@@ -94,7 +95,8 @@ def ours(mesh: TriangleMesh, resolution: int) -> dict:
         clean["mesh"], _ = drop_unusable(replace(mesh))  # a new mesh, because a mesh caches what was computed about it
 
     def sampling(**options) -> int:
-        return len(sample_mesh(clean["mesh"], resolution=resolution, **options))
+        # a copy, or one would have what the other computed
+        return len(sample_mesh(copy(clean["mesh"]), resolution=resolution, **options))
 
     return {"cleaning": cleaning, "sampling": partial(sampling, **PLAIN), "with the defaults": sampling}
 

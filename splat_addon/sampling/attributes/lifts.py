@@ -36,12 +36,12 @@ def edge_bulges(mesh: TriangleMesh, spacing: float) -> np.ndarray | None:
         corners = gather_corners(mesh.positions.T, mesh.triangles[some])
         normals = mesh.corner_normals[some].transpose(2, 1, 0).astype(np.float64, order="C")
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-            normals /= np.linalg.norm(normals, axis=0)
+            normals /= np.sqrt(_squares(normals))
             for start, row in enumerate(bulges):
                 end = (start + 1) % 3
                 edge = corners[:, end] - corners[:, start]
                 below = np.maximum(-_dots(edge, normals[:, start]), 0) + np.maximum(_dots(edge, normals[:, end]), 0)
-                row[some] = np.nan_to_num(below, posinf=0)
+                row[some] = np.where(np.isfinite(below), below, 0)
 
     run_all(partial(fill, some) for some in triangle_chunks(len(mesh)))
     return bulges if MOST_LIFT * bulges.max(initial=0) > LEAST_LIFT * spacing else None
@@ -54,6 +54,12 @@ def lifts(shares: np.ndarray, bulges: np.ndarray) -> np.ndarray:
         lifted += shares[k] * shares[(k + 1) % 3] * bulges[k]
     # weights on an edge are rounded to either side of 0
     return np.maximum(lifted, 0, out=lifted)
+
+
+def _squares(vectors: np.ndarray) -> np.ndarray:
+    """(...) squared lengths of (3, ...) vectors."""
+    x, y, z = vectors
+    return x * x + y * y + z * z
 
 
 def _dots(a: np.ndarray, b: np.ndarray) -> np.ndarray:

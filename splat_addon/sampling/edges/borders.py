@@ -14,7 +14,7 @@ import numpy as np
 
 from ...runs import expand
 from ...workers import run_all
-from ..mesh.connectivity import twins
+from ..mesh.connectivity import connectivity
 from ..mesh.joining import have_same_values
 from ..mesh.triangle_mesh import TriangleMesh, corner_indices, corners_at, doubled_areas, triangle_chunks
 from .calm_vertices import calm_vertices
@@ -174,7 +174,7 @@ def _breaking(mesh: TriangleMesh, normals: np.ndarray, angles: np.ndarray):
     normals: (3, T) float32, unit. angles: (T,) radians; the smaller of both faces' makes a crease. Of an edge with
     a calm end nothing more needs to be known.
     """
-    one_of = twins(mesh.places)
+    one_of = connectivity(mesh).twins
     places = corner_indices(mesh.triangles if one_of is None else one_of.take(mesh.triangles))
     looks = _looks(mesh)
     calm = calm_vertices(mesh, places, normals, angles, looks)

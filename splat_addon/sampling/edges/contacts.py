@@ -12,7 +12,7 @@ import numpy as np
 from ...runs import expand
 from ..ldc.grid import Grid
 from ..mesh.barycentric import barycentric
-from ..mesh.connectivity import triangle_parts, twins
+from ..mesh.connectivity import connectivity
 from ..mesh.triangle_mesh import TriangleMesh
 from .borders import Borders, EdgeSurvey, unit_vectors
 from .places_on_triangles import places_on_triangles
@@ -37,7 +37,7 @@ def find_contacts(mesh: TriangleMesh, survey: EdgeSurvey, spacing: float) -> Bor
     nothing = borders.take(np.empty(0, np.intp))
     if not len(borders):
         return nothing
-    part = triangle_parts(mesh.triangles, twins(mesh.places))
+    part = connectivity(mesh).parts
     if (part == part[0]).all():
         return nothing
     sides = _one_of_each(borders)

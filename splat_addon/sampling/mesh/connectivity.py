@@ -4,12 +4,38 @@ number."""
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 
-from .triangle_mesh import corner_indices, triangle_chunks
+from .triangle_mesh import TriangleMesh, corner_indices, triangle_chunks
 
 #: Bits of a hash used for a first, quick test of which entries may match.
 _SIEVE_BITS = 16
+
+
+class Connectivity:
+    """What is connected in a mesh, each computed when it is first asked for."""
+
+    def __init__(self, mesh: TriangleMesh):
+        self._places, self._triangles = mesh.places, mesh.triangles
+
+    @cached_property
+    def twins(self) -> np.ndarray | None:
+        """(V,) intp, from `twins`."""
+        return twins(self._places)
+
+    @cached_property
+    def parts(self) -> np.ndarray:
+        """(T,) intp: the part of each triangle, as its lowest vertex."""
+        return part_labels(self._triangles, self.twins).take(self._triangles[:, 0])
+
+
+def connectivity(mesh: TriangleMesh) -> Connectivity:
+    """The connectivity of a mesh without non-finite vertices, the same object each time."""
+    if mesh.connected is None:
+        object.__setattr__(mesh, "connected", Connectivity(mesh))
+    return mesh.connected
 
 
 def twins(keys: np.ndarray) -> np.ndarray | None:
@@ -66,11 +92,6 @@ def part_labels(corners: np.ndarray, labels: np.ndarray | None = None) -> np.nda
         labels[roots] = roots.take(part_labels(number.take(apart), np.arange(len(roots))))
         labels = labels.take(labels)
     return labels
-
-
-def triangle_parts(triangles: np.ndarray, labels: np.ndarray | None) -> np.ndarray:
-    """(T,) the part of each of (T, 3) triangles, as its lowest vertex. labels: from `twins`."""
-    return part_labels(triangles, labels).take(triangles[:, 0])
 
 
 def _shortened(labels: np.ndarray) -> np.ndarray:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .connectivity import triangle_parts, twins
+from .connectivity import connectivity
 from .survey import signed_volumes, survey
 from .triangle_mesh import TriangleMesh
 
@@ -31,9 +31,8 @@ class SolidShape:
         self._mesh = mesh
         self._is_closed = bool(len(mesh)) and bool(np.isfinite(mesh.bounds()).all()) and survey(mesh).is_closed
         if self._is_closed:
-            #: For each vertex the first one at its position; None: no position is shared.
-            self._twins = twins(mesh.places)
-            self._parts = triangle_parts(mesh.triangles, self._twins)
+            connected = connectivity(mesh)
+            self._twins, self._parts = connected.twins, connected.parts
 
     def is_solid_at(self, positions: np.ndarray) -> bool:
         """Whether the mesh is solid with these (V, 3) positions of the same vertices. False also if vertices that

@@ -39,7 +39,8 @@ class TriangleMesh:
     materials: (T,) integer index into `surfaces` and into the object's material slots; None: all 0.
     surfaces: what each material is made of; an index past the end uses the last.
     known_usable, facing_area: set only by `drop_unusable`. The latter is the area projected onto the image that each
-        triangle faces most, object units squared. surveyed: result of `survey`, set only by it.
+        triangle faces most, object units squared. surveyed, connected: results of `survey` and `connectivity`,
+        set only by them.
 
     Raises ValueError with one sentence for a wrong shape or type or an index out of range.
     """
@@ -54,6 +55,7 @@ class TriangleMesh:
     known_usable: bool = field(default=False, init=False, repr=False)
     facing_area: float = field(default=0.0, init=False, repr=False)
     surveyed: object = field(default=None, init=False, repr=False)
+    connected: object = field(default=None, init=False, repr=False)
 
     def __post_init__(self):
         # each component contiguous, because almost all computations go component by component

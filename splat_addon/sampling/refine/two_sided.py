@@ -19,7 +19,7 @@ from ..attributes.ellipses import MAX_STRETCH
 from ..edges.ordering import order_of
 from ..ldc.depth_cube import rows_of
 from ..ldc.scan_conversion import Spans, batches
-from ..mesh.connectivity import triangle_parts, twins
+from ..mesh.connectivity import connectivity
 from ..mesh.survey import boundary_weights
 from ..mesh.triangle_mesh import TriangleMesh, corner_indices, doubled_areas, gather_corners
 from ..table import SampleTable
@@ -133,7 +133,7 @@ def _have_other_sides(
 
 def _closed_parts(mesh: TriangleMesh) -> np.ndarray:
     """(T,) the number of the connected part that a triangle belongs to if that is closed, -1 otherwise."""
-    parts = triangle_parts(mesh.triangles, twins(mesh.places))
+    parts = connectivity(mesh).parts
     boundaries = np.zeros(len(mesh.positions), np.uint64)
     np.add.at(boundaries, parts, boundary_weights(*mesh.places.take(corner_indices(mesh.triangles))))
     return np.where(boundaries.take(parts) == 0, parts, -1)
