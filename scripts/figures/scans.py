@@ -47,7 +47,7 @@ def run(options, report) -> None:
         if not path.is_file():
             raise Problem(f"There is no scan {path}; name a folder that has it with --scans.")
         shown += [over(picture) for picture in pictures(path, options)]
-    report.picture("scans", shown, columns=3)
+    report.picture("scans", shown, columns=3, colors=256)
 
 
 def pictures(path: Path, options) -> list[np.ndarray]:

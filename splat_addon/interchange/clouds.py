@@ -8,6 +8,8 @@ were a PLY file, so that `points` understands all formats alike.
 | red green blue | display colours, integers of 8 or 16 bits |
 | nx ny nz | normals |
 | intensity, classification, return_number, number_of_returns, gps_time | as scanners give them |
+| point_source_id, user_data, infrared | the same; the first is often the number of a flight line |
+| scan_angle | degrees |
 | extra:NAME | whatever else a file gives by a name |
 | scan | number of the scan in the file, from 0; `Cloud.places` says where its scanner stood |
 """

@@ -48,7 +48,7 @@ def read_contents(
     float_colors: what red, green and blue mean if they are floats, a name in `FLOAT_COLORS`: sRGB display values, as
         Blender's own import takes them, or scene-linear ones.
     progress: called with the number of points and the share of the file so far; of SPZ, glTF and PLY of text, once.
-    most: bare points to take, evenly, from a file of more, of which LAZ, COPC and LAS are not read whole; 0: all.
+    most: bare points to take, evenly, from a file of more, of which LAS and COPC are not read whole; 0: all.
     text_columns: what the columns of a text file are, as of `xyz.opened`.
 
     Raises ValueError with one sentence for a file that has none of the formats, is damaged or has no positions; OSError

@@ -34,8 +34,9 @@ _HEADER = np.dtype(
 #: Where version 1.4 has the number of points, in a header of at least this size.
 _COUNT_14, _SIZE_14 = 247, 375
 
-#: Points of a chunk, if a file has none of its own; and points that are read for each that a thinned file needs.
-_CHUNK, _DENSER = 50_000, 8
+#: Points of a thinned file that are decompressed, so that those that are taken are even; of more, only the beginnings
+#: of the chunks are.
+_MOST_DECOMPRESSED = 100_000_000
 
 #: Bits of the point format that say that points are compressed.
 _COMPRESSED = 0xC0
@@ -52,6 +53,9 @@ POINT_FORMATS = [_OLD, _OLD + _TIME, _OLD + _COLORS, _OLD + _TIME + _COLORS, _OL
 POINT_FORMATS += [_OLD + _TIME + _COLORS + _WAVE, _NEW, _NEW + _COLORS, _NEW + _COLORS + _INFRARED, _NEW + _WAVE]
 POINT_FORMATS += [_NEW + _COLORS + _INFRARED + _WAVE]
 _FIRST_NEW = 6
+
+#: Degrees of a step of the scan angle in formats of version 1.4.
+_DEGREES = 0.006
 
 #: Bits: the class in old formats, and a point that its owner deleted, in both.
 _OLD_CLASS, _OLD_WITHHELD, _NEW_WITHHELD = 0x1F, 0x80, 0x04
@@ -79,8 +83,8 @@ def is_this(head: bytes) -> bool:
 
 
 def opened(path: str | os.PathLike, most: int = 0) -> Cloud:
-    """The points of the file; of more than `most`, if that is not 0, some that lie everywhere, but at least as many.
-    Raises ValueError with a sentence, OSError."""
+    """The points of the file; of more than `most`, if that is not 0, at most so many that lie everywhere, but of COPC
+    its coarsest levels with at least so many. Raises ValueError with a sentence, OSError."""
     with open(path, "rb") as stream:
         header = _read_header(stream, os.path.getsize(path))
     cloud = Cloud(iter(()), said=[*header.said], count=header.count, is_thinned=0 < most < header.count)
@@ -91,8 +95,8 @@ def opened(path: str | os.PathLike, most: int = 0) -> Cloud:
 def _portions(path: str | os.PathLike, header: _Header, said: list[str], most: int) -> Iterator[tuple[float, Table]]:
     withheld = 0
     with open(path, "rb") as stream:
-        for share, data in _data(stream, os.path.getsize(path), header, most):
-            table, deleted = _table(np.frombuffer(data, header.record), header)
+        for share, rows in _rows(stream, os.path.getsize(path), header, most, said):
+            table, deleted = _table(rows, header)
             withheld += int(deleted.sum())
             yield share, without(table, deleted)
     if withheld:
@@ -102,34 +106,46 @@ def _portions(path: str | os.PathLike, header: _Header, said: list[str], most: i
         said.append(f"Passed over {unknown} bytes of each point that the file adds to its point format (extra bytes)")
 
 
-def _data(stream: BinaryIO, size: int, header: _Header, most: int) -> Iterator[tuple[float, bytes]]:
-    """The bytes of points, and the share of them so far. most: as of `opened`."""
-    length, runs, done = header.record.itemsize, [(0, header.count)], 0
+def _rows(
+    stream: BinaryIO, size: int, header: _Header, most: int, said: list[str]
+) -> Iterator[tuple[float, np.ndarray]]:
+    """The share of the points so far, and rows of the file. most: as of `opened`. said: of the cloud."""
+    length, done = header.record.itemsize, 0
     nodes = copc.coarsest(stream, size, header.points, header.laszip, most) if most else None
-    read = _reader(stream, size, header)  # it checks the chunks, and stands at the first point
-    if most:
-        for number, (place, count, packed) in enumerate(nodes or ()):
+    read = _reader(stream, size, header)  # it checks the chunks
+    if nodes is not None:
+        for number, (place, count, packed) in enumerate(nodes):
             stream.seek(place)
-            yield (number + 1) / len(nodes), decompressed_chunk(stream.read(packed), count, header.laszip, length)
-        runs = _spread(header, most) if nodes is None else []
-    total, at_once = max(sum(count for _, count in runs), 1), max(1, min(PORTION, PORTION_BYTES // length))
-    for start, number in runs:
-        for first in range(start, start + number, at_once):
-            count = min(at_once, start + number - first)
-            done += count
-            yield done / total, read(count, first)
+            data = decompressed_chunk(stream.read(packed), count, header.laszip, length)
+            yield (number + 1) / len(nodes), np.frombuffer(data, header.record)
+        return
+    runs = _runs(header, most)
+    if len(runs) > 1:
+        said.append(
+            f"Took points from the beginnings of chunks only, because {header.count:,} would take long to decompress"
+        )
+    at_once = max(1, min(PORTION, PORTION_BYTES // length) // (1 if header.laszip is None else runs[0].step))
+    total = max(sum(map(len, runs)), 1)
+    for run in runs:
+        for first in range(0, len(run), at_once):
+            some = run[first : first + at_once]
+            done += len(some)
+            yield done / total, np.frombuffer(read(some), header.record)
 
 
-def _spread(header: _Header, most: int) -> list[tuple[int, int]]:
-    """The beginnings of all chunks: first point and number of some runs with several times `most` points, because
-    neighbours in the file are too close to one another."""
-    chunk = _CHUNK if header.laszip is None else chunk_size(header.laszip) or _CHUNK
-    each = max(1, _DENSER * most // -(-header.count // chunk))
-    return [(first, min(each, chunk, header.count - first)) for first in range(0, header.count, chunk)]
+def _runs(header: _Header, most: int) -> list[range]:
+    """The numbers of the points to read: all if `most` is 0, or else at most so many."""
+    ends, chunk = [(0, header.count)], None if header.laszip is None else chunk_size(header.laszip)
+    if most and chunk and header.count > _MOST_DECOMPRESSED:
+        each = max(1, chunk * _MOST_DECOMPRESSED // header.count)
+        ends = [(first, min(first + each, header.count)) for first in range(0, header.count, chunk)]
+    total = sum(last - first for first, last in ends)
+    step = -(-total // max(most - len(ends), 1)) if most else 1
+    return [range(first, last, max(step, 1)) for first, last in ends]
 
 
-def _reader(stream: BinaryIO, size: int, header: _Header) -> Callable[[int, int], bytes]:
-    """read(count, first) -> the bytes of points from number `first` on."""
+def _reader(stream: BinaryIO, size: int, header: _Header) -> Callable[[range], bytes]:
+    """read(numbers) -> the bytes of the points of these numbers."""
     stream.seek(header.points)
     if header.laszip is not None:
         return decompressor(stream, size, header.laszip, header.record.itemsize, header.count)
@@ -140,9 +156,12 @@ def _reader(stream: BinaryIO, size: int, header: _Header) -> Callable[[int, int]
             f"{max(size - header.points, 0):,} bytes are left for them; it is cut off or damaged."
         )
 
-    def read(count: int, first: int) -> bytes:
+    def run(first: int, count: int) -> bytes:
         stream.seek(header.points + first * length)
         return stream.read(count * length)
+
+    def read(numbers: range) -> bytes:
+        return run(numbers[0], len(numbers)) if numbers.step == 1 else b"".join(run(number, 1) for number in numbers)
 
     return read
 
@@ -158,9 +177,11 @@ def _table(rows: np.ndarray, header: _Header) -> tuple[Table, np.ndarray]:
     table["return_number"] = rows["returns"] & mask
     table["number_of_returns"] = (rows["returns"] >> bits) & mask
     table["classification"] = rows["class"] if is_new else rows["class"] & _OLD_CLASS
-    for name in ("gps_time", *COLOR):
-        if name in rows.dtype.names:
-            table[name] = rows[name].astype(rows[name].dtype.newbyteorder("="))
+    table["scan_angle"] = rows["angle"] * np.float32(_DEGREES if is_new else 1)
+    names = {"gps_time": "gps_time", "user": "user_data", "source": "point_source_id", "infrared": "infrared"}
+    for field, name in (names | {color: color for color in COLOR}).items():
+        if field in rows.dtype.names:
+            table[name] = rows[field].astype(rows[field].dtype.newbyteorder("="))
     if header.extras:
         extra = np.ascontiguousarray(rows["extra"]).view(np.uint8).reshape(len(rows), -1)
         table |= {EXTRA + each.name: each.of(extra) for each in header.extras}

@@ -13,6 +13,8 @@ from typing import BinaryIO
 
 import numpy as np
 
+from .clouds import PORTION
+
 try:
     import lazrs
 except ImportError:
@@ -29,10 +31,8 @@ _ONE_RUN, _LAYERED = 1, 3
 _LAYERS, _EXTRA_BYTES = {10: 9, 11: 1, 12: 2, 13: 1}, 14
 
 
-def decompressor(
-    stream: BinaryIO, size: int, laszip: bytes, length: int, total: int
-) -> Callable[[int, int], bytearray]:
-    """read(count, first) -> the bytes of points from number `first` on.
+def decompressor(stream: BinaryIO, size: int, laszip: bytes, length: int, total: int) -> Callable[[range], bytes]:
+    """read(numbers) -> the bytes of the points of these numbers; those between them are decompressed too.
 
     stream: at the first point. size: of the file. laszip: its description of the compression. length: bytes of a
     point. Raises ValueError with a sentence.
@@ -46,20 +46,25 @@ def decompressor(
     if int.from_bytes(laszip[:2], "little") != _ONE_RUN:
         _check_chunks(stream, start, _chunk_table(stream, start, size), laszip, length, total)
     stream.seek(start)
-    source = _trusted(lambda: lazrs.LasZipDecompressor(stream, laszip))
+    # several threads need chunks that can be counted
+    kind = lazrs.LasZipDecompressor if chunk_size(laszip) is None else lazrs.ParLasZipDecompressor
+    source = _trusted(lambda: kind(stream, laszip))
     if _trusted(lambda: lazrs.LazVlr(laszip).item_size()) != length:
         raise ValueError(f"The LAZ file does not compress the points of {length} bytes that it has; it is damaged.")
 
     place = 0
 
-    def read(count: int, first: int) -> bytearray:
+    def read(numbers: range) -> bytes:
         nonlocal place
-        points, where = bytearray(count * length), f"after {first:,} of {total:,} points"
-        if first != place:
+        first, where = numbers[0], f"after {numbers[0]:,} of {total:,} points"
+        if not 0 <= first - place <= PORTION:
             _trusted(lambda: source.seek(first), where)
-        _trusted(lambda: source.decompress_many(points), where)
-        place = first + count
-        return points
+            place = first
+        skipped, before = first - place, place
+        place = numbers[-1] + 1
+        points = np.empty((place - before, length), np.uint8)
+        _trusted(lambda: source.decompress_many(points.reshape(-1)), where)
+        return points[skipped :: numbers.step].tobytes()
 
     return read
 

@@ -21,6 +21,10 @@ ATTRIBUTES = {
     "number_of_returns": ("numberofreturns", "returncount"),
     "gps_time": ("gpstime", "timestamp", "time"),
     "scan": ("scan", "originalcloudindex"),
+    "point_source_id": ("pointsourceid",),
+    "scan_angle": ("scanangle", "scananglerank"),
+    "user_data": ("userdata",),
+    "infrared": ("infrared", "nearinfrared", "nir"),
 }
 
 

@@ -34,8 +34,10 @@ def test_every_format_gives_what_was_written(read, number, minor, is_packed):
     assert ("gps_time" in found) == ("gps_time" in rows.dtype.names) and (points.colors is None) == (
         "red" not in rows.dtype.names
     )
-    if "gps_time" in found:
-        assert np.array_equal(found["gps_time"], rows["gps_time"])
+    for name, field in {"gps_time": "gps_time", "point_source_id": "source", "user_data": "user"}.items():
+        assert name not in found or np.array_equal(found[name], rows[field])
+    assert np.allclose(found["scan_angle"], rows["angle"] * (0.006 if is_new else 1.0))
+    assert ("infrared" in found) == ("infrared" in rows.dtype.names) and {"point_source_id", "user_data"} <= {*found}
 
 
 @pytest.mark.parametrize(("most", "white"), [(255, 255), (65535, 65535)])

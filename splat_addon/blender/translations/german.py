@@ -1364,11 +1364,11 @@ GERMAN = {
     "Look": "Blick",
     "At Most": "Höchstens",
     (
-        "Take so many points of a scan that has more, evenly; 0 takes all. Of LAZ and LAS the rest is not "
-        "read, and of COPC the coarsest levels are"
+        "Take so many points of a scan that has more, evenly; 0 takes all. Of LAS and COPC the rest is not "
+        "read; LAZ is read at some millions of points a second"
     ): (
-        "So viele Punkte eines Scans nehmen, der mehr hat, gleichmäßig verteilt; 0 nimmt alle. Von LAZ und "
-        "LAS wird der Rest nicht gelesen, von COPC werden es die gröbsten Stufen"
+        "So viele Punkte eines Scans nehmen, der mehr hat, gleichmäßig verteilt; 0 nimmt alle. Von LAS und "
+        "COPC wird der Rest nicht gelesen; LAZ wird mit einigen Millionen Punkten je Sekunde gelesen"
     ),
     "A file of blocks takes all points; set At Most to 0": (
         "Eine Datei aus Blöcken nimmt alle Punkte; Höchstens auf 0 setzen"
