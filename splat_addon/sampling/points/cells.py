@@ -18,17 +18,23 @@ _LAST_CELL = 2**60
 #: Below this, coordinates lose digits.
 _LEAST_SIZE = 1e-290
 
+#: The first size that is tried, in spacings of a square full of points; the number of points that share a cell is found
+#: to this factor, unless the size would have to be increased more often than this.
+_FIRST, _ABOUT, _GROWN = 6.0, 1.2, 3
+
 
 class Cells:
     """N points in cells of one size, and the queries among them.
 
-    order: (N,) int32 points, cell by cell; a *place* is an index into it. columns: x, y and z by place in units of the
-        cell, each with a final infinite entry at place N, which stands for "no point". queries: (Q,) the queried
+    order: (N,) int32 points, cell by cell; a *place* is an index into it. unit: the largest power of two that is not
+        above the size, so that coordinates in it keep every bit. size: of a cell, in units. columns: (3, N + 1) by
+        place, in units, with a final infinite one at place N, which stands for "no point". queries: (Q,) the queried
         points, ascending; cell_of_query, place_of_query: (Q,); is_far: (Q,) whether it lies in the last cells.
     """
 
     def __init__(self, positions: np.ndarray, size: float, queries: np.ndarray):
-        self.size = size
+        self.unit = 2.0 ** np.floor(np.log2(size))
+        self.size = size / self.unit
         scaled = [column / size for column in positions.T]
         keys, self._strides = _cell_keys(scaled)
         self.order = np.argsort(keys, kind="stable").astype(np.int32)
@@ -36,10 +42,11 @@ class Cells:
         self._first = np.flatnonzero(np.diff(keys, prepend=-1))
         self._keys = keys[self._first]
         self._first = np.append(self._first, len(keys))
-        self.columns = [np.append(column[self.order], np.inf) for column in scaled]
+        self.columns = np.full((3, len(keys) + 1), np.inf)
+        np.divide(positions[self.order].T, self.unit, out=self.columns[:, :-1])
         self.queries = queries
         self.is_far = _beyond_last(scaled)[queries]
-        self.query_columns = [column[queries] for column in scaled]
+        self._scaled_queries = [column[queries] for column in scaled]
         place_of_point = np.empty(len(keys), np.int32)
         place_of_point[self.order] = np.arange(len(keys), dtype=np.int32)
         self.place_of_query = place_of_point[queries]
@@ -60,13 +67,14 @@ class Cells:
         return places
 
     def certain_squares(self, queries: np.ndarray) -> np.ndarray:
-        """(q,) squared distance, in cells, up to which the block is certain to hold every point; slightly reduced for
+        """(q,) squared distance, in units, up to which the block is certain to hold every point; slightly reduced for
         rounding."""
         walls = np.full(len(queries), np.inf)
-        for column in self.query_columns:
+        for column in self._scaled_queries:
             inside = column[queries] % 1.0
-            walls = np.minimum(walls, np.minimum(inside, 1.0 - inside))
-        return (1.0 + walls) ** 2 * (1 - 1e-6)
+            rounding = 4 * np.finfo(np.float64).eps * np.abs(column[queries])
+            walls = np.minimum(walls, np.minimum(inside, 1.0 - inside) - rounding)
+        return (self.size * np.maximum(1.0 + walls, 0)) ** 2 * (1 - 1e-6)
 
     def _rows_of_blocks(self) -> tuple[np.ndarray, np.ndarray]:
         """(C, 9) first place and number of points of each row of three cells in the block around a query's cell."""
@@ -81,26 +89,32 @@ class Cells:
 
 
 def fine_cell_size(positions: np.ndarray, wanted: float) -> float:
-    """A cell size at which an average point shares its cell with at most about `wanted` points, itself included.
+    """A cell size at which an average point shares its cell with about `wanted` points, itself included.
 
     positions: (N, 3), pairwise different. The average is over points, so that a dense cluster counts; points in the
-        last cells are excluded. The size is a power of two: coordinates in units of it keep every bit.
+        last cells are excluded.
     """
-    size = _power_of_two(4 * float(np.ptp(positions, axis=0).max()) / np.sqrt(len(positions)))
-    while True:
-        scaled = [column / size for column in positions.T]
-        keys = np.sort(_cell_keys(scaled)[0][~_beyond_last(scaled)])
-        counts = np.diff(np.flatnonzero(np.diff(keys, prepend=-1, append=-1)))
-        company = np.square(counts, dtype=np.float64).sum() / max(len(keys), 1)
-        if company <= 1.5 * wanted or size < _LEAST_SIZE:
-            return size
-        # On a surface the count grows with the square of the size.
-        size = _power_of_two(size * np.sqrt(wanted / company))
+    size = _FIRST * float(np.ptp(positions, axis=0).max()) / np.sqrt(len(positions))
+    company = _company(positions, size)
+    while company > _ABOUT * wanted and size > _LEAST_SIZE:
+        # On a surface the number grows with the square of the size.
+        size *= np.sqrt(wanted / company)
+        company = _company(positions, size)
+    for _ in range(_GROWN):
+        # In space it grows with the cube.
+        larger = size * np.cbrt(wanted / max(company, 1.0))
+        if company > wanted / _ABOUT or (company := _company(positions, larger)) > _ABOUT * wanted:
+            break
+        size = larger
+    return size
 
 
-def _power_of_two(size: float) -> float:
-    """The largest power of two that is not above the number."""
-    return 2.0 ** np.floor(np.log2(size))
+def _company(positions: np.ndarray, size: float) -> float:
+    """Mean over the points of how many share a point's cell."""
+    scaled = [column / size for column in positions.T]
+    keys = np.sort(_cell_keys(scaled)[0][~_beyond_last(scaled)])
+    counts = np.diff(np.flatnonzero(np.diff(keys, prepend=-1, append=-1)))
+    return np.square(counts, dtype=np.float64).sum() / max(len(keys), 1)
 
 
 def _beyond_last(scaled: list[np.ndarray]) -> np.ndarray:

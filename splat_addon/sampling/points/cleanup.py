@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..mesh.cleaning import MAX_COORDINATE
-from .normals import least_around, local_planes
+from .normals import least_around, local_moments, thicknesses
 
 #: A point is isolated if its neighbours are this many times as far from it as they are from theirs. In scans of even
 #: density the ratio stays below 2; at a step to a quarter of the density it is 2.
@@ -75,7 +75,7 @@ def isolated_points(positions: np.ndarray, neighbours: np.ndarray, distances: np
     sparse = np.flatnonzero((mean > SPARSE_RATIO * typical) & ~isolated)
     own = distances[sparse]
     has_gap = (own[:, _FEWEST_IN_GROUP - 1 :] > _GAP * own[:, _FEWEST_IN_GROUP - 2 : -1]).any(axis=1)
-    isolated[sparse] = has_gap | (local_planes(positions, neighbours, sparse).thicknesses() > _THICK)
+    isolated[sparse] = has_gap | (thicknesses(local_moments(positions, neighbours, sparse)[1]) > _THICK)
     return isolated | (isolated[neighbours].mean(axis=1) > 0.5)
 
 

@@ -65,7 +65,7 @@ def tangent_ellipses(
     """
     count = len(neighbours)
     axes, half_axes, known = np.empty((count, 3)), np.empty((count, 2)), np.empty(count, bool)
-    columns, normal_columns = np.ascontiguousarray(positions.T), np.ascontiguousarray(normals.T)
+    columns, normal_columns = np.ascontiguousarray(positions.T), np.ascontiguousarray(normals.T, np.float32)
     least_alike = np.full(count, _SAME_SHEET_COSINE)
     if creases is not None:
         least_alike[creases.points] = creases.cosine
@@ -73,15 +73,19 @@ def tangent_ellipses(
     def job(part: slice):
         near, own = np.ascontiguousarray(neighbours[part].T), normal_columns[:, part]
         frame = (*tangent_frames(normals[part]), normals[part])
-        away = [column[near] - column[part] for column in columns]
-        along_u, along_v, height = (sum(a * n for a, n in zip(away, w.T, strict=True)) for w in frame)
-        bounds = sum(column[near] * n for column, n in zip(normal_columns, own, strict=True)) > least_alike[part]
-        bounds &= np.abs(height) <= _STEEPEST_SLOPE * np.hypot(along_u, along_v)
-        spacing, known[part] = _spacings(along_u, along_v, bounds)
+        away, scale = _offsets(columns, near, part)
+        along_u, along_v, height = (_along(away, w.T.astype(np.float32)) for w in frame)
+        square = along_u * along_u + along_v * along_v
+        bounds = _along([column[near] for column in normal_columns], own) > least_alike[part]
+        bounds &= height * height <= np.float32(_STEEPEST_SLOPE**2) * square
+        spacing, known[part] = _spacings(square, bounds)
+        to_spacing = (1 / spacing).astype(np.float32)
+        spacing = spacing * scale
         if creases is not None:
             rows, spacings, ends = _ends(creases, part, frame)
             spacing[rows] = np.minimum(spacing[rows], spacings)
-        reach, is_open = _reaches(along_u / spacing, along_v / spacing, bounds)
+            to_spacing = (scale / spacing).astype(np.float32)
+        reach, is_open = _reaches(along_u * to_spacing, along_v * to_spacing, bounds)
         reach = np.minimum(reach, _LONGEST)
         if creases is not None:
             reach[:, rows] = _up_to_lines(reach[:, rows], is_open[:, rows], ends / spacing[rows])
@@ -104,39 +108,56 @@ def are_borne(positions: np.ndarray, normals: np.ndarray, neighbours: np.ndarray
     return (gaps.max(axis=1) < _WIDEST_GAP) & is_flat
 
 
-def _spacings(u: np.ndarray, v: np.ndarray, bounds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _offsets(columns: np.ndarray, near: np.ndarray, part: slice) -> tuple[list[np.ndarray], np.ndarray]:
+    """x, y and z, (k, n) float32 each, of neighbours relative to their points, in units of (n,), about the distance of
+    the farthest, which keeps small and large ones within the range of float32."""
+    away = [column[near] - column[part] for column in columns]
+    scale = np.maximum.reduce([np.abs(a[-1]) for a in away])
+    return [np.divide(a, scale, dtype=np.float32, casting="same_kind") for a in away], scale
+
+
+def _along(vectors: list[np.ndarray], directions: np.ndarray) -> np.ndarray:
+    """(k, n) products of vectors, given as x, y and z, with (3, n) directions."""
+    made = vectors[0] * directions[0]
+    for component, direction in zip(vectors[1:], directions[1:], strict=True):
+        made += component * direction
+    return made
+
+
+def _spacings(square: np.ndarray, bounds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(n,) spacing: the edge of a square with the average area per point in a disc around it, and whether there is a
     neighbour.
 
-    A disc that reaches to the j-th neighbour holds j + 1 points. u, v, bounds: (k, n), nearest first.
+    A disc that reaches to the j-th neighbour holds j + 1 points. square: (k, n) squared distances, nearest first.
+    bounds: (k, n).
     """
-    farthest = np.sqrt(np.maximum.accumulate(np.where(bounds, u * u + v * v, 0), axis=0))
-    counts = np.cumsum(bounds, axis=0)
-    spacing = farthest * np.sqrt(np.pi / (counts + 1))
-    spacing[:-1][counts[:-1] < _FEWEST] = np.inf
-    spacing, known = spacing.min(axis=0), farthest[-1] > 0
-    return np.where(known, spacing, 1), known
+    farthest = np.maximum.accumulate(np.where(bounds, square, np.float32(0)), axis=0)
+    counts = np.cumsum(bounds, axis=0, dtype=np.int16)
+    areas = farthest / (counts + np.float32(1))
+    areas[:-1][counts[:-1] < _FEWEST] = np.inf
+    known = farthest[-1] > 0
+    return np.where(known, np.sqrt(np.pi * areas.min(axis=0).astype(np.float64)), 1), known
 
 
 def _reaches(u: np.ndarray, v: np.ndarray, bounds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(D, n) distance to the region's border in each direction, and (D, n) bool, whether nothing bounds it there.
 
-    u, v: (k, n) neighbours in the tangent plane, in spacings. bounds: (k, n) which of them count. The border towards a
-        neighbour at d is the bisector, which direction e meets at |d|^2 / (2 d.e). An open direction takes the distance
-        of the opposite direction, so that a splat at a border does not bulge outwards.
+    u, v: (k, n) float32 neighbours in the tangent plane, in spacings. bounds: (k, n) which of them count. The border
+        towards a neighbour at d is the bisector, which direction e meets at |d|^2 / (2 d.e). An open direction takes
+        the distance of the opposite direction, so that a splat at a border does not bulge outwards.
     """
-    u, v = np.float32(u), np.float32(v)
     square = u * u + v * v
-    bounds = bounds & (square > 0)
     # Inverse distance, so that neighbours sideways or behind give 0 or less and the largest value wins.
-    inverse, unit = (np.divide(bounds, w, out=np.zeros_like(u), where=bounds) for w in (square / 2, np.sqrt(square)))
+    inverse = 1 / np.sqrt(np.where(bounds & (square > 0), square, np.float32(np.inf)))
+    u, v, inverse = u * inverse, v * inverse, 2 * inverse
     half = DIRECTIONS // 2
     reach, cosine = np.empty((DIRECTIONS, u.shape[1]), np.float32), np.empty((DIRECTIONS, u.shape[1]), np.float32)
     for row, angle in enumerate(np.arange(half) * np.float32(2 * np.pi / DIRECTIONS)):
-        along = np.cos(angle) * u + np.sin(angle) * v
-        for values, weight in ((reach, inverse), (cosine, unit)):
-            weighted = along * weight
-            values[row], values[row + half] = weighted.max(axis=0), -weighted.min(axis=0)
+        along = np.cos(angle) * u
+        along += np.sin(angle) * v
+        cosine[row], cosine[row + half] = along.max(axis=0), -along.min(axis=0)
+        along *= inverse
+        reach[row], reach[row + half] = along.max(axis=0), -along.min(axis=0)
     with np.errstate(divide="ignore", over="ignore"):
         reach = np.where(cosine >= _OPEN_COSINE, 1 / np.maximum(reach, 0), np.inf)
     is_open = np.isinf(reach)

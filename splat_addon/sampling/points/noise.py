@@ -15,7 +15,7 @@ import numpy as np
 
 from ...vectors import unit
 from ...workers import in_portions
-from .normals import CHUNK, covariances, least_around, least_planes, local_planes
+from .normals import CHUNK, covariances, least_around, least_planes, local_moments, thicknesses
 
 #: Neighbours of noisy points, as a multiple of those of others.
 WIDER = 1.5
@@ -66,17 +66,17 @@ def smoothed_normals(
     is_needed[rows] = is_needed[neighbours[rows]] = True
     needed = np.flatnonzero(is_needed)
     place = np.cumsum(is_needed, dtype=np.int32) - 1
-    planes = local_planes(positions, neighbours, needed, lambda share: report(0.4 * share))
-    middles = positions[needed].T + planes.middles
-    thick = np.zeros(len(positions))
-    thick[needed] = planes.thicknesses()
+    middles, moments = local_moments(positions, neighbours, needed, lambda share: report(0.4 * share))
+    middles += positions[needed].T
+    thick = thicknesses(moments)
+    moments = moments.astype(np.float32)
     made, heights, is_thick = np.empty((len(rows), 3)), np.empty((len(rows), 3)), np.empty(len(rows), bool)
 
     def widened(part: slice):
         own = rows[part]
-        near = np.concatenate([neighbours[own].T, own[None]])
-        mean, moments = _joined_moments(middles, planes.moments, place[near])
-        made[part], _ = least_planes(moments)
+        near = place[np.concatenate([neighbours[own].T, own[None]])]
+        mean, joined = _joined_moments(middles, moments, near)
+        made[part], _ = least_planes(joined)
         heights[part] = mean.T - positions[own]
         is_thick[part] = thick[near].min(axis=0) > _THICK
 

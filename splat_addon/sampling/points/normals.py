@@ -43,11 +43,6 @@ class LocalPlanes:
         """(N,) root mean square distance of the members from the plane, per degree of freedom."""
         return np.sqrt(self.variances * (self.members / max(self.members - 3, 1)))
 
-    def thicknesses(self) -> np.ndarray:
-        """(N,) share of the members' variance that is across the plane: 0 to 1/3."""
-        whole = self.moments[:3].sum(axis=0)
-        return self.variances / np.where(whole > 0, whole, 1)
-
     def heights(self) -> np.ndarray:
         """(N,) distance of each point from the plane through the mean of its neighbours."""
         off = np.abs(np.einsum("nc,cn->n", self.normals, self.middles))
@@ -64,17 +59,39 @@ def local_planes(
     rows: the points whose planes are found; None: the first n. report: called with the finished share.
     Collinear neighbours have no unique plane; any one through the line is returned.
     """
+    middles, moments = local_moments(positions, neighbours, rows, lambda share: report(0.6 * share))
+    normals, variances = np.empty((moments.shape[1], 3)), np.empty(moments.shape[1])
+
+    def job(part: slice):
+        normals[part], variances[part] = least_planes(moments[:, part])
+
+    in_portions(len(normals), CHUNK, job, lambda share: report(0.6 + 0.4 * share))
+    return LocalPlanes(normals, middles, moments, variances, neighbours.shape[1] + 1)
+
+
+def local_moments(
+    positions: np.ndarray,
+    neighbours: np.ndarray,
+    rows: np.ndarray | None = None,
+    report: Callable[[float], None] = lambda share: None,
+) -> tuple[np.ndarray, np.ndarray]:
+    """(3, N) middles and (6, N) moments as in `LocalPlanes`, from the arguments of `local_planes`."""
     count = len(neighbours) if rows is None else len(rows)
-    normals, middles, moments = np.empty((count, 3)), np.empty((3, count)), np.empty((6, count))
-    variances, columns = np.empty(count), np.ascontiguousarray(positions.T)
+    middles, moments = np.empty((3, count)), np.empty((6, count))
+    columns = np.ascontiguousarray(positions.T)
 
     def job(part: slice):
         own = part if rows is None else rows[part]
         middles[:, part], moments[:, part] = _moments(columns, neighbours[own], own)
-        normals[part], variances[part] = least_planes(moments[:, part])
 
     in_portions(count, CHUNK, job, report)
-    return LocalPlanes(normals, middles, moments, variances, neighbours.shape[1] + 1)
+    return middles, moments
+
+
+def thicknesses(moments: np.ndarray) -> np.ndarray:
+    """(N,) share of the variance that is across the plane that fits best, 0 to 1/3, from (6, N) moments."""
+    whole = moments[:3].sum(axis=0)
+    return np.maximum(_least_values(moments / np.where(whole > 0, whole, 1))[0], 0)
 
 
 def least_around(values: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
@@ -121,25 +138,40 @@ def least_directions(moments: np.ndarray) -> np.ndarray:
     products are short, because two eigenvalues are nearly equal, LAPACK is used.
     """
     xx, yy, zz, yz, xz, xy = moments
-    shift = (xx + yy + zz) / 3
-    a, b, c = xx - shift, yy - shift, zz - shift
-    size = np.sqrt((a * a + b * b + c * c + 2 * (yz * yz + xz * xz + xy * xy)) / 6)
-    determinant = a * (b * c - yz * yz) - xy * (xy * c - yz * xz) + xz * (xy * yz - b * xz)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        cosine = np.nan_to_num(np.clip(determinant / (2 * size**3), -1, 1))
-    least = 2 * size * np.cos(np.arccos(cosine) / 3 + 2 * np.pi / 3)
-    rows = np.stack([np.stack([a - least, xy, xz]), np.stack([xy, b - least, yz]), np.stack([xz, yz, c - least])])
-    crosses = np.stack([np.cross(rows[i], rows[j], axis=0) for i, j in ((0, 1), (1, 2), (2, 0))])
+    least, size = _least_values(moments)
+    a, b, c = xx - least, yy - least, zz - least
+    rows = (a, xy, xz), (xy, b, yz), (xz, yz, c)
+    crosses = np.empty((3, 3, len(least)))
+    for cross, p, q in zip(crosses, rows, (*rows[1:], rows[0]), strict=True):
+        for row, (i, j) in zip(cross, ((1, 2), (2, 0), (0, 1)), strict=True):
+            np.multiply(p[i], q[j], out=row)
+            row -= p[j] * q[i]
     squares = np.einsum("ijn,ijn->in", crosses, crosses)
-    longest = squares.argmax(axis=0)
-    every = np.arange(len(longest))
-    vectors, square = crosses[longest, :, every], squares[longest, every]
+    vectors, square = crosses[0].copy(), squares[0].copy()
+    for cross, others in zip(crosses[1:], squares[1:], strict=True):
+        is_longer = others > square
+        np.copyto(vectors, cross, where=is_longer)
+        np.copyto(square, others, where=is_longer)
     doubtful = np.flatnonzero(~(square > _DOUBTFUL**2 * size**4) | (square == 0))
-    vectors = vectors / np.sqrt(np.where(square > 0, square, 1))[:, None]
+    vectors /= np.sqrt(np.where(square > 0, square, 1))
     if len(doubtful):
         matrices = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])[:, :, doubtful].transpose(2, 0, 1)
-        vectors[doubtful] = np.linalg.eigh(matrices)[1][:, :, 0]
-    return vectors
+        vectors[:, doubtful] = np.linalg.eigh(matrices)[1][:, :, 0].T
+    return vectors.T
+
+
+def _least_values(moments: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(n,) least eigenvalues of symmetric 3 x 3 matrices, and (n,) the size of the eigenvalues' deviations from their
+    mean."""
+    xx, yy, zz, yz, xz, xy = moments
+    shift = (xx + yy + zz) / 3
+    a, b, c = xx - shift, yy - shift, zz - shift
+    yz2, xz2, xy2 = yz * yz, xz * xz, xy * xy
+    size = np.sqrt((a * a + b * b + c * c + 2 * (yz2 + xz2 + xy2)) / 6)
+    determinant = a * (b * c - yz2) - xy2 * c + 2 * (xy * yz * xz) - b * xz2
+    with np.errstate(invalid="ignore", divide="ignore"):
+        cosine = np.nan_to_num(np.clip(determinant / (2 * size * size * size), -1, 1))
+    return shift + 2 * size * np.cos(np.arccos(cosine) / 3 + 2 * np.pi / 3), size
 
 
 def tangent_frames(normals: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -4,7 +4,7 @@
 Hoppe et al. 1992, section 3.3, with the flip criterion of Xie et al. 2003 at sharp edges: the choice is propagated
 along the minimum spanning tree of the neighbour graph, where an edge is cheap if the two tangent planes agree. The tree
 is grown by Boruvka's rounds instead of Prim's queue: in each round every part takes its best edge to another part, all
-at once in numpy.
+at once in numpy. Most edges leave no doubt; what they join is found first, in any order, so that few others are sorted.
 """
 
 from __future__ import annotations
@@ -13,11 +13,17 @@ from collections.abc import Callable
 
 import numpy as np
 
+from ...workers import in_portions
+
 #: Neighbours that the graph connects; more would cost time and bridge thin gaps.
 GRAPH_NEIGHBOURS = 8
 
+#: Edges with this agreement or more leave no doubt. Those to the nearest neighbours are not looked at for that: they
+#: are short and therefore often steep.
+_NO_DOUBT, _SHORT = 0.75, 4
+
 #: Edges per batch.
-_CHUNK = 1 << 16
+_CHUNK = 1 << 15
 
 
 def consistent_signs(
@@ -31,21 +37,56 @@ def consistent_signs(
     positions, normals: (N, 3) float64. neighbours: (N, k) indices. Parts are numbered from 0 without gaps.
     report: called with the share of processed edges.
     """
-    ends = _edges(neighbours[:, :GRAPH_NEIGHBOURS])
-    agreement = _agreement(positions, normals, ends)
+    graph = neighbours[:, :GRAPH_NEIGHBOURS]
+    columns, directions = np.ascontiguousarray(positions.T), np.ascontiguousarray(normals.T, np.float32)
+    part, flipped = _without_doubt(columns, directions, graph)
+    report(0.6)
+    ends = _edges(graph, part)
+    agreement = _agreement(columns, directions, *ends)
     # 16 bits are enough to tell good edges from bad ones, and allow a radix sort.
     order = np.argsort((65535 * (1 - np.minimum(np.abs(agreement), 1))).astype(np.uint16), kind="stable")
-    ends, turned = ends[:, order], (agreement[order] < 0)
-    part = np.arange(len(positions))
-    flipped = np.zeros(len(positions), bool)
+    ends, turned = ends[:, order], agreement[order] < 0
+    label, flips = _joined(part[ends], turned ^ flipped[ends[0]] ^ flipped[ends[1]], int(part.max(initial=-1)) + 1)
+    report(1.0)
+    return np.where(flipped ^ flips[part], -1, 1).astype(np.int8), label[part]
+
+
+def _without_doubt(columns: np.ndarray, directions: np.ndarray, graph: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(N,) the part of each point, of what edges without doubt join, and (N,) bool, whether it must flip to agree with
+    the others in it. columns: (3, N) places. directions: (3, N) float32 normals. graph: (N, k) neighbours."""
+    count, far = len(graph), graph[:, _SHORT:] if graph.shape[1] > _SHORT else graph
+    agreement = np.empty(far.shape[::-1], np.float32)
+    for row, other in zip(agreement, far.T, strict=True):
+        row[:] = _agreement(columns, directions, np.arange(count), other)
+    is_good, others = np.abs(agreement) >= _NO_DOUBT, np.ascontiguousarray(far.T)
+    # Each point follows its good neighbour with the least number, if that is below its own.
+    own = np.arange(count, dtype=others.dtype)
+    parent, flip = own.copy(), np.zeros(count, bool)
+    for other, good, row in zip(others, is_good, agreement, strict=True):
+        follows = good & (other < parent)
+        parent[follows], flip[follows] = other[follows], row[follows] < 0
+    part, flipped = _roots(parent, flip)
+    line, at = np.nonzero(is_good & (part[others] != part))
+    ends = np.stack([part[at], part[others[line, at]]])
+    turned = (agreement[line, at] < 0) ^ flipped[at] ^ flipped[others[line, at]]
+    label, flips = _joined(ends, turned, int(part.max(initial=-1)) + 1)
+    return label[part], flipped ^ flips[part]
+
+
+def _joined(ends: np.ndarray, turned: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """(count,) the number of the part that each node belongs to, and whether it must flip to agree with others in it.
+
+    ends: (2, E) different nodes, best edge first. turned: (E,) whether their normals disagree.
+    """
+    label, flipped = np.arange(count), np.zeros(count, bool)
     while ends.shape[1]:
-        parent, flip = _merge(part[ends], turned ^ flipped[ends[0]] ^ flipped[ends[1]], len(positions))
-        flipped ^= flip[part]
-        part = parent[part]
-        between = np.flatnonzero(part[ends[0]] != part[ends[1]])
+        number, flip = _merge(ends, turned, count)
+        flipped ^= flip[label]
+        label = number[label]
+        turned, ends, count = turned ^ flip[ends[0]] ^ flip[ends[1]], number[ends], int(number.max()) + 1
+        between = np.flatnonzero(ends[0] != ends[1])
         ends, turned = ends[:, between], turned[between]
-        report(1 - ends.shape[1] / len(agreement))
-    return np.where(flipped, -1, 1).astype(np.int8), np.unique(part, return_inverse=True)[1]
+    return label, flipped
 
 
 def facing_outward(positions: np.ndarray, normals: np.ndarray, part: np.ndarray) -> np.ndarray:
@@ -86,34 +127,38 @@ def facing_scanners(positions: np.ndarray, normals: np.ndarray, scanners: np.nda
         return np.where(cosines < -_STEEP, -1, 1).astype(np.int8)
 
 
-def _edges(neighbours: np.ndarray) -> np.ndarray:
-    """(2, E) int32 pairs of neighbours; a pair found from both ends is kept once."""
+def _edges(neighbours: np.ndarray, part: np.ndarray) -> np.ndarray:
+    """(2, E) int32 pairs of neighbours in different parts; a pair found from both ends is kept once."""
     count = len(neighbours)
-    own, other = np.arange(count, dtype=np.int64)[:, None], neighbours.astype(np.int64)
-    keys = (np.minimum(own, other) * count + np.maximum(own, other)).ravel()
+    own, column = np.nonzero(part[neighbours] != part[:, None])
+    other = neighbours[own, column].astype(np.int64)
+    keys = np.minimum(own, other) * count + np.maximum(own, other)
     keys.sort()
     keys = keys[np.diff(keys, prepend=-1) > 0]
     return np.stack(np.divmod(keys, count)).astype(np.int32)
 
 
-def _agreement(positions: np.ndarray, normals: np.ndarray, ends: np.ndarray) -> np.ndarray:
-    """(E,) from 1 for neighbours in one plane with the same normal to -1 for opposite normals; values near 0 are
-    uncertain.
+def _agreement(columns: np.ndarray, directions: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """(E,) float32 from 1 for neighbours a, b in one plane with the same normal to -1 for opposite normals; values near
+    0 are uncertain. columns: (3, N) places. directions: (3, N) float32 normals.
 
     If the normals are within 60 degrees of parallel or antiparallel, this is their cosine, reduced if the edge is steep
     relative to the planes: a steep edge is noise or leads to another sheet. Otherwise the points lie across a sharp
     edge, and it is half the cosine after reflecting the second normal in the plane halfway between them.
     """
-    agreement = np.empty(ends.shape[1], np.float32)
-    for start in range(0, ends.shape[1], _CHUNK):
-        part = slice(start, start + _CHUNK)
-        a, b = ends[:, part]
-        along, na, nb = positions[b] - positions[a], normals[a], normals[b]
-        length, da, db, dot = (np.einsum("ij,ij->i", *p) for p in ((along, along), (na, along), (nb, along), (na, nb)))
-        length = np.sqrt(np.where(length > 0, length, 1))
-        da, db = da / length, db / length
+    agreement = np.empty(len(a), np.float32)
+
+    def job(part: slice):
+        at, to = a[part], b[part]
+        na, nb = directions.take(at, axis=1), directions.take(to, axis=1)
+        along = columns.take(to, axis=1) - columns.take(at, axis=1)
+        length = np.sqrt(np.einsum("in,in->n", along, along))
+        along = np.divide(along, np.where(length > 0, length, 1), dtype=np.float32, casting="same_kind")
+        da, db, dot = (np.einsum("in,in->n", *pair) for pair in ((na, along), (nb, along), (na, nb)))
         in_plane = dot * (1 - np.maximum(np.abs(da), np.abs(db)))
         agreement[part] = np.where(np.abs(dot) >= 0.5, in_plane, (dot - 2 * da * db) / 2)
+
+    in_portions(len(a), _CHUNK, job)
     return agreement
 
 
@@ -122,7 +167,7 @@ def _merge(parts: np.ndarray, turned: np.ndarray, count: int) -> tuple[np.ndarra
 
     parts: (2, E) different parts at the ends of each edge, best edge first.
     turned: (E,) whether their normals disagree across it.
-    Returns (count,) the root of each part, and (count,) whether it must flip to agree with the root.
+    Returns (count,) the new number of each part, and (count,) whether it must flip to agree with the others in it.
     """
     best = np.full(count, parts.shape[1])
     for end in parts:
@@ -138,9 +183,17 @@ def _merge(parts: np.ndarray, turned: np.ndarray, count: int) -> tuple[np.ndarra
     # Two parts that chose the same edge point at each other; the smaller one becomes the root.
     root = (parent[parent] == np.arange(count)) & (np.arange(count) < parent)
     parent[root], flip[root] = np.flatnonzero(root), False
+    return _roots(parent, flip)
+
+
+def _roots(parent: np.ndarray, flip: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(count,) the number of the tree that each node belongs to, without gaps, and whether it must flip to agree with
+    the root. parent: (count,) of each node, itself for roots. flip: (count,) whether it must to agree with the parent,
+    False for roots."""
+    number = np.cumsum(parent == np.arange(len(parent))) - 1
     while True:
         grandparent = parent[parent]
         if (grandparent == parent).all():
-            return parent, flip
-        flip ^= flip[parent]
+            return number[parent], flip
+        flip = flip ^ flip[parent]
         parent = grandparent
