@@ -160,7 +160,7 @@ class FileImport:
         return f"{self.name}: {step}"
 
     def cancelled(self) -> str:
-        return said("The import was cancelled; nothing was changed")
+        return f"{self.name}: " + said("The import was cancelled; nothing was changed")
 
 
 def show_scan(

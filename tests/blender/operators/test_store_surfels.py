@@ -15,7 +15,7 @@ from splat_addon.blender.geometry.attributes import write_surfels
 from splat_addon.blender.geometry.scene_offset import scene_offset
 from splat_addon.blender.operators import import_file, modal_work
 from splat_addon.blender.operators.store_surfels import Storing
-from splat_addon.interchange import write_ply
+from splat_addon.interchange import ReadingCancelled, write_ply
 from splat_addon.streaming import BlockFile, Stream, WritingCancelled, id_of, write_blocks
 from splat_addon.surfels import Surfels
 
@@ -244,6 +244,33 @@ def test_esc_cancels_keeping_a_file(is_pressed, opaque, saved, window):
     assert (saved / "scan.surfelblocks").exists() != is_pressed and len(list(saved.iterdir())) == 3 - is_pressed
     assert operator.said == [("INFO", "Storing was cancelled; nothing was changed")] * is_pressed
     assert "Esc cancels" in window.texts[0] and window.texts[-1] is None
+
+
+class Cancellable:
+    """A work that ends early once it is cancelled."""
+
+    share, is_cancelled = 0.0, False
+
+    def run(self):
+        if self.is_cancelled:
+            raise ReadingCancelled
+
+    def status(self):
+        return ""
+
+    def cancelled(self):
+        return "cancelled"
+
+
+def test_esc_ends_what_is_done_next_and_keeps_what_is_done(window):
+    works = [Cancellable() for _ in range(3)]
+    operator = Operator(None)
+    operator._beginnings = lambda context: [lambda work=work: work for work in works]
+    works[1].is_cancelled = True
+    assert operator.run_in_thread(window) == {"RUNNING_MODAL"}
+    while (ended := operator.modal(window, Pressed("TIMER"))) == {"RUNNING_MODAL"}:
+        pass
+    assert ended == {"FINISHED"} and operator.finished == 1 and operator.said == [("INFO", "cancelled")]
 
 
 def test_ctrl_c_in_the_background_leaves_nothing(opaque, saved, monkeypatch):
