@@ -20,8 +20,9 @@ from ..rendering.assembly.accumulation import pixel_offset, sample_camera
 #: Samples along each side of a pixel of each picture.
 _BOX_EDGE, _GAUSSIAN_EDGE = 4, 2
 
-#: Variance of the places of pictures, square pixels: that of the Gaussian pixel without the box that each picture has.
-_GAUSSIAN = Settings.filter_variance - 1 / 12
+#: Variance of the places of pictures, square pixels: that of the Gaussian pixel without that of the grid of samples that
+#: each picture has.
+_GAUSSIAN = Settings.filter_variance - (1 - 1 / _GAUSSIAN_EDGE**2) / 12
 
 #: Told the finished share; returns False to cancel.
 Told = Callable[[float], bool | None]
@@ -118,5 +119,6 @@ def _places(name: str, count: int) -> np.ndarray:
     first = (even[: count // 2] + 0.5) % 1
     radius = np.sqrt(-2 * np.log1p(-np.clip(first[:, 0], 0, 1 - 1e-6)))
     places = radius[:, None] * np.stack([np.cos(2 * np.pi * first[:, 1]), np.sin(2 * np.pi * first[:, 1])], axis=1)
-    places *= math.sqrt(_GAUSSIAN) / places.std()
+    # few places would be wider in one direction than in another
+    places = places @ np.linalg.inv(np.linalg.cholesky(places.T @ places / len(places))).T * math.sqrt(_GAUSSIAN)
     return np.stack([places, -places], axis=1).reshape(count, 2)

@@ -29,6 +29,7 @@ from splat_addon.trade import (
     series_of,
 )
 from splat_addon.trade.effects import Effects, Kind, tried_beside
+from splat_addon.trade.exact import _places
 from splat_addon.trade.page import frontier, png
 from splat_addon.trade.target import samples_of, settled
 
@@ -46,6 +47,14 @@ def test_exact_pictures_are_those_of_float64_rays(name, least, shot, on_device):
     found = psnr(exact.colors[name], render_exact(*shot, FLAT, samples=8, pixel_filter=name).color)
     assert found > least
     assert abs(exact.converged[name] - found) < 12
+
+
+@pytest.mark.parametrize("count", [8, 16, 64])
+def test_the_gaussian_is_as_wide_in_all_directions(count):
+    """The places of pictures have its variance beside that of the two samples along a pixel in each, without a mean."""
+    places = _places("gaussian", count)
+    np.testing.assert_allclose(places.mean(axis=0), 0, atol=1e-12)
+    np.testing.assert_allclose(places.T @ places / count, (0.5 - 0.25**2) * np.eye(2), atol=1e-12)
 
 
 def test_rows_tell_how_far_each_choice_is_off_and_what_it_takes(shot, on_device):

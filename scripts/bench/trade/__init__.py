@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The trade of speed for accuracy: scenes x methods x settings, each compared with the float64 reference.
+"""The trade of speed for accuracy: scenes x methods x settings, each compared with an exact picture.
 
-PSNR is measured in sRGB; the pixel filters are the Gaussian of sigma 0.7071 pixels and the box. A ratio of times is the
-median over the turns of a choice's time divided by the yardstick's in the same turn. `to_float32`: PSNR relative to the
-same choice without 16-bit formats. A quick run draws the promised scenes at half the size with a quarter of the splats
-and a coarser reference.
+Parts: `methods` beside float64 rays; `numbers` (tolerance of levels, shadow resolution, layers, storage, sums), each
+changed alone; `densities` and reductions beside the mesh; `stability`, how much pictures flicker; `passes`, where the
+time goes. PSNR is measured in sRGB; the pixel filters are the Gaussian of sigma 0.7071 pixels and the box. A ratio of
+times is the median over the turns of a choice's time divided by the yardstick's in the same turn. `to_float32`: PSNR
+relative to the same choice without 16-bit formats. A quick run draws one scene of each part, small.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from statistics import geometric_mean
 
 import numpy as np
 
+from bench.trade import densities, numbers, stability
 from bench.trade.cases import CASES, FULL, View
 from bench.trade.choices import CHOICES, YARDSTICK, choices, columns, label
 from bench.trade.plots import by_scene, draw_differences, frontier, plot_overview
@@ -28,22 +30,29 @@ from splat_addon.reference.metrics import mean_flip, psnr
 from splat_addon.rendering import PRESETS, Renderer, Settings, open_device
 
 DEVICES = ("standalone", "blender")
-QUICK = {"size": FULL // 2, "turns": 2, "samples": 5, "choices": "methods"}
+QUICK = {"size": FULL // 4, "turns": 2, "samples": 3, "choices": "methods"}
 
 
 def arguments(parser) -> None:
+    parser.add_argument("--parts", nargs="+", choices=PARTS, default=list(PARTS), help="what to measure")
     parser.add_argument("--scenes", nargs="+", choices=CASES, metavar="NAME", help=f"some of: {', '.join(CASES)}")
-    parser.add_argument("--choices", choices=CHOICES, default="all", help="the settings that each is drawn with")
+    parser.add_argument("--choices", choices=CHOICES, default="page", help="the settings that each is drawn with")
     parser.add_argument("--size", type=int, default=FULL, help="pixels along each side; splats keep theirs")
     parser.add_argument("--samples", type=int, default=8, help="N of the truth's N x N samples a pixel; of no choice")
 
 
 def run(options, report) -> None:
-    names = options.scenes or [c.name for c in CASES.values() if c.is_promised or not options.quick]
     renderer = Renderer(open_device(options.device))
-    chosen = choices(options.choices, renderer.device.multisample_counts)
     truth = f"truth of {options.samples} x {options.samples} samples"
     report.header(renderer.device, f"{options.size} x {options.size} pixels, medians of {options.turns} turns, {truth}")
+    for part in options.parts:
+        PARTS[part](renderer, options, report)
+
+
+def run_methods(renderer: Renderer, options, report) -> None:
+    names = options.scenes or [c.name for c in CASES.values() if c.is_promised or not options.quick]
+    names = names[: 1 if options.quick and not options.scenes else None]
+    chosen = choices(options.choices, renderer.device.multisample_counts)
     rows, skipped = [], {}
     for name in names:
         try:
@@ -62,6 +71,42 @@ def run(options, report) -> None:
     best = {id(row) for mine in by_scene(rows).values() for row in frontier(mine)}
     lines = [[*row.values(), "*" if id(row) in best else ""] for row in rows]
     report.table([*rows[0], ""], lines, "Every row; * is on the frontier of FLIP (gaussian) and time:")
+
+
+def run_numbers(renderer: Renderer, options, report) -> None:
+    about = "Settings changed alone, beside Balanced with four samples; times are in that of the first row of a scene:"
+    report.table(numbers.HEAD, numbers.number_lines(renderer, options), about)
+
+
+def run_densities(renderer: Renderer, options, report) -> None:
+    rows = []
+    for row in densities.measure_densities(renderer, options, report):
+        rows.append(row)
+        report.csv("densities", rows)
+    if not rows:
+        return
+    about = "Balanced (16 samples) under the Gaussian, Final under the box: FLIP, mean over the models (worst)"
+    report.table(["pixels a surfel", *densities.HEAD], densities.density_lines(rows), f"{about}, by density:")
+    report.table(["reduction", *densities.HEAD], densities.reduction_lines(rows), f"{about}, at 0.75 pixels a surfel:")
+
+
+def run_stability(renderer: Renderer, options, report) -> None:
+    about = "Flicker in code values, over 16 shifts within a pixel, and 16 pictures of a camera that turns:"
+    report.table(["", *stability.heads(options)], stability.stability_lines(renderer, options), about)
+
+
+def run_passes(renderer: Renderer, options, report) -> None:
+    about = "Tori in the sun, one sample: milliseconds of all passes, and the share of each:"
+    report.table(["preset", "ms", "passes"], numbers.pass_lines(renderer, options), about)
+
+
+PARTS = {
+    "densities": run_densities,
+    "numbers": run_numbers,
+    "stability": run_stability,
+    "passes": run_passes,
+    "methods": run_methods,
+}
 
 
 def measure(case, renderer: Renderer, chosen: list[Settings], options, report) -> list[dict]:

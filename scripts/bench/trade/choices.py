@@ -60,7 +60,14 @@ OF_PAPERS = [
     *settings_of(("ewa", "ewa_object"), as_printed=(False, True)),
     *settings_of(("mip", "raycast", "raycast_printed", "sprites", "sprites_printed")),
 ]
-CHOICES = {"methods": METHODS_ALONE, "all": ALL, "layers": LAYERS, "papers": OF_PAPERS}
+#: What the page compares: formats, layers and thresholds are the other parts' and other pages'.
+OF_PAGE = [
+    *METHODS_ALONE,
+    *settings_of(("mip",), supersampling=(2,)),
+    *settings_of(("quad",), multisampling=(4,), sample_shading=(False, True)),
+    *settings_of(("ewa", "ewa_object"), as_printed=(True,)),
+]
+CHOICES = {"page": OF_PAGE, "methods": METHODS_ALONE, "all": ALL, "layers": LAYERS, "papers": OF_PAPERS}
 
 #: The choices shown beside the reference.
 PICTURED = frozenset([*settings_of(EVERY), replace(YARDSTICK, supersampling=2), *LAYERS[-2:]])

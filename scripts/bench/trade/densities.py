@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How far pictures of surfels are from the mesh that they were made from, by their distance in pixels and by reduction.
+
+Both errors and their sum, under both pixel filters: of the exact picture of the surfels beside that of the mesh, of the
+engine's picture beside that of the surfels, and of the engine's beside the mesh. FLIP is the mean over the pixels that
+the mesh touches, so that it does not depend on how much of the picture it fills.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from statistics import geometric_mean
+
+import numpy as np
+
+from bench.representation.meshes import load_colored, view
+from measuring.models import short
+from splat_addon.differences import mean_flip, psnr
+from splat_addon.reference.kept import remembered
+from splat_addon.reference.triangles import render_triangles
+from splat_addon.rendering import PRESETS, Renderer, Scene, Settings
+from splat_addon.sampling import Outline, camera_spacing, is_solid, outline, sample_surface
+from splat_addon.trade import ExactPictures
+
+MODELS = "plate", "fandisk.obj.gz", "truck.obj.gz", "spot.obj.gz", "armadillo.obj.gz"
+PIXELS = 0.375, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0
+REDUCTIONS = "normal", "three_to_one", "none", "grazing"
+
+#: Pixels between surfels at which reductions are compared.
+_COMPARED = 0.75
+
+#: The preset that has the pixel filter, with its samples.
+_FINAL, _BALANCED = PRESETS["final"], PRESETS["balanced"]
+_OF_FILTER = {"gaussian": {**_BALANCED.values, "samples": 16}, "box": {**_FINAL.values, "samples": 1}}
+
+SETTINGS = Settings(shading="flat", transparent_film=True, outputs=("color",))
+
+
+def measure_densities(renderer: Renderer, options, report) -> Iterator[dict]:
+    """A row for each model, density and reduction. Models that are missing are said and left out."""
+    for name in MODELS[: 1 if options.quick else None]:
+        try:
+            mesh = load_colored(options.models, name)
+        except FileNotFoundError as error:
+            report.say(f"**Skipped: {name}**. {error}.")
+            continue
+        camera, surface = view(mesh, 0, options.size), outline(mesh)
+        corners, colors = mesh.positions[mesh.triangles], mesh.corner_colors[..., :3]
+        truths = {kind: remembered(render_triangles)(corners, colors, camera, pixel_filter=kind) for kind in _OF_FILTER}
+        tried = [(pixels, "normal") for pixels in PIXELS] + [(_COMPARED, each) for each in REDUCTIONS[1:]]
+        for pixels, reduction in tried:
+            surfels = _converted(mesh, _spacing(surface, camera, pixels), reduction)
+            drawn = _errors(renderer, Scene((surfels,)), camera, truths)
+            yield {
+                "model": short(name), "pixels": pixels, "reduction": reduction, "surfels": len(surfels), **drawn
+            }  # fmt: skip
+
+
+def _spacing(surface: Outline, camera, pixels: float) -> float:
+    to_view = camera.world_to_view()
+    seen = {"window": camera.window, "size": camera.size, "near": camera.near, "is_orthographic": False}
+    return camera_spacing(surface, pixels, object_to_view=to_view, **seen)
+
+
+def _converted(mesh, spacing: float, reduction: str):
+    """As the operator converts. Other reductions merge or count samples, so that none replaces others."""
+    plain = {} if reduction == "normal" else {"tolerance": None}
+    surfels = sample_surface(mesh, spacing=spacing, reduction=reduction, **plain).surfels
+    return surfels.as_solid() if is_solid(mesh) else surfels
+
+
+def _errors(renderer: Renderer, scene: Scene, camera, truths: dict) -> dict:
+    """Columns of a row: seconds of each preset, and FLIP and dB of each error under each filter."""
+    exact, row = ExactPictures.drawn(renderer, scene, camera, SETTINGS, 16), {}
+    for kind, values in _OF_FILTER.items():
+        truth = truths[kind]
+        share = float((truth.coverage > 0).mean())
+        frame = renderer.render(scene, camera, Settings(**{**vars(SETTINGS), **values}))
+        pairs = {
+            "representation": (exact.colors[kind], truth.color),
+            "splatting": (frame.color, exact.colors[kind]),
+            "both": (frame.color, truth.color),
+        }
+        row[f"ms_{kind}"] = round(frame.stats["milliseconds"], 1)
+        for name, (picture, beside) in pairs.items():
+            picture, beside = picture[..., :3], np.asarray(beside[..., :3], np.float32)
+            row[f"flip_{name}_{kind}"] = round(mean_flip(picture, beside) / share, 4)
+            row[f"psnr_{name}_{kind}"] = round(psnr(picture, beside) + 10 * math.log10(share), 1)
+    return row
+
+
+def density_lines(rows: list[dict]) -> Iterator[list]:
+    """A line for each density: the mean over the models, and the worst of them, of FLIP of the representation and of
+    both errors."""
+    normal = [row for row in rows if row["reduction"] == "normal"]
+    for pixels in PIXELS:
+        mine = [row for row in normal if row["pixels"] == pixels]
+        first = [row for row in normal if row["pixels"] == _COMPARED]
+        yield [f"{pixels:g}", *_cells(mine, first)]
+
+
+def reduction_lines(rows: list[dict]) -> Iterator[list]:
+    """A line for each reduction."""
+    for reduction in REDUCTIONS:
+        mine, first = (
+            [row for row in rows if row["pixels"] == _COMPARED and row["reduction"] == each]
+            for each in (reduction, "normal")
+        )
+        yield [reduction.replace("_", " "), *_cells(mine, first)]
+
+
+HEAD = [
+    "surfels, relative",
+    *(
+        f"{kind} pixel: {what}"
+        for kind in _OF_FILTER
+        for what in ("surfels beside mesh", "picture beside surfels", "sum")
+    ),
+]
+
+
+def _cells(mine: list[dict], first: list[dict]) -> list[str]:
+    """FLIP, mean and worst, and the mean dB of the sum."""
+    counts = geometric_mean(own["surfels"] / one["surfels"] for own, one in zip(mine, first, strict=True))
+    cells = [f"{counts:.2f}"]
+    for kind in _OF_FILTER:
+        for name in ("representation", "splatting", "both"):
+            flips = [row[f"flip_{name}_{kind}"] for row in mine]
+            cell = f"{np.mean(flips):.4f} ({max(flips):.4f})"
+            cells.append(
+                cell + (f", {np.mean([r[f'psnr_both_{kind}'] for r in mine]):.0f} dB" if name == "both" else "")
+            )
+    return cells
