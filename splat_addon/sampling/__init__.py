@@ -14,6 +14,7 @@ from .blocks import Block, joined_blocks, read_block, read_request, sample_block
 from .camera_density import NotSeenError, Outline, camera_spacing, least_camera_spacings, outline
 from .deform.deforming import STRETCHED_SHARE, DeformingSurfels
 from .density import grid_spacing, predict_count
+from .density_error import LARGEST_ERROR, LEAST_ERROR, error_at, pixels_for
 from .edges.borders import DEFAULT_CREASE_ANGLE
 from .edges.edge_samples import edge_samples, joined_at_edges, transition_edges
 from .ldc.reductions import DEFAULT_GRAZING_ANGLE, LEAST_GRAZING_ANGLE, REDUCTIONS, projected_area
@@ -36,6 +37,8 @@ __all__ = [
     "DEFAULT_GRAZING_ANGLE",
     "DEFAULT_SPLAT_SIZE",
     "FLAT",
+    "LARGEST_ERROR",
+    "LEAST_ERROR",
     "LEAST_GRAZING_ANGLE",
     "NO_FLAT_EXTENTS",
     "PLAIN",
@@ -66,6 +69,7 @@ __all__ = [
     "drop_strays",
     "drop_unusable",
     "edge_samples",
+    "error_at",
     "flat_extents",
     "gloss_textures",
     "grid_spacing",
@@ -79,6 +83,7 @@ __all__ = [
     "least_camera_spacings",
     "normal_map_texture",
     "outline",
+    "pixels_for",
     "places_in_triangles",
     "predict_count",
     "projected_area",

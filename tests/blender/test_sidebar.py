@@ -176,6 +176,16 @@ def test_the_quality_is_that_of_the_density():
     assert settings.quality == "OTHER"
 
 
+def test_an_error_chooses_the_density_and_the_density_tells_its_error(cube, drawn):
+    settings = bpy.context.scene.surfel_conversion
+    usual = settings.error
+    settings.density, settings.error = "RESOLUTION", 1.5 * usual
+    assert settings.density == "AUTOMATIC" and settings.pixels > 0.75 and settings.error == pytest.approx(1.5 * usual)
+    assert "error" in drawn().properties and "Error up to" in " ".join(drawn().texts)
+    settings.density = "RESOLUTION"
+    assert "error" not in drawn().properties
+
+
 def test_the_file_is_searched_for_surfels_only_when_its_objects_change(cube, convert, drawn, monkeypatch):
     """A sidebar is drawn with every move of the mouse over it."""
     convert(resolution=8)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-TINY = ["trade", "--quick", "--size", "32", "--samples", "2", "--turns", "2"]
+TINY = ["trade", "--quick", "--size", "32", "--samples", "2", "--turns", "2", "--parts", "methods"]
 
 
 @pytest.fixture(scope="module")
@@ -59,7 +59,7 @@ def test_the_table_says_how_it_was_come_by_and_names_no_host(measured):
 
 
 def test_plots_and_pictures_are_there(measured):
-    for name in ("overview.png", "text-differences.png"):
+    for name in ("frontier.png", "differences.png"):
         with Image.open(measured[1] / name) as picture:
             assert np.asarray(picture.convert("L")).std() > 10, name
 
@@ -79,8 +79,10 @@ def test_nothing_measured_is_a_failure(runs):
 def test_the_frontier_keeps_what_nothing_beats():
     from bench.trade.plots import frontier
 
-    rows = [{"ratio": r, "flip_gaussian": f} for r, f in ((1, 0.5), (1, 0.4), (2, 0.4), (3, 0.1), (2.5, 0.6), (4, 0.2))]
-    assert [(row["ratio"], row["flip_gaussian"]) for row in frontier(rows)] == [(1, 0.4), (3, 0.1)]
+    pairs = (1, 0.5), (1, 0.4), (2, 0.4), (3, 0.1), (2.5, 0.6), (4, 0.2)
+    rows = [{"ratio": r, "flip_gaussian": f, "flip_box": f + 0.1} for r, f in pairs]
+    rows.append({"ratio": 0.5, "flip_gaussian": 0.7, "flip_box": 0.45})
+    assert [row["ratio"] for row in frontier(rows)] == [0.5, 1, 3]
 
 
 def test_every_case_can_be_built_and_every_choice_is_its_own(models):
@@ -95,6 +97,18 @@ def test_every_case_can_be_built_and_every_choice_is_its_own(models):
     assert {s.multisampling for s in every} == {0, 4} and {s.multisampling for s in choices()} == {0}
     assert len(set(every)) == len(every) and set(choices("methods")) < set(every)
     assert all(YARDSTICK in choices(name) for name in CHOICES)
+
+
+def test_cameras_of_flicker_move_by_parts_of_a_pixel_and_turn_around_the_scene():
+    from bench.trade.stability import STEPS, shifted, turned
+    from splat_addon.reference import scenes
+
+    _, camera = scenes.torus(100, (16, 16))
+    pixel = (camera.window[1] - camera.window[0]) / 16
+    moves = [round((each.window[0] - camera.window[0]) / pixel, 6) for each in shifted(camera)]
+    assert sorted(set(moves)) == [0, 0.25, 0.5, 0.75] and len(moves) == STEPS
+    far = {round(float(np.linalg.norm(each.matrix_world[:3, 3])), 6) for each in turned(camera)}
+    assert len(far) == 1 and len({each.matrix_world[0, 3] for each in turned(camera)}) == STEPS
 
 
 def test_no_time_holds_the_packing_of_surfels():

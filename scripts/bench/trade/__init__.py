@@ -19,8 +19,8 @@ import numpy as np
 
 from bench.trade import densities, numbers, stability
 from bench.trade.cases import CASES, FULL, View
-from bench.trade.choices import CHOICES, YARDSTICK, choices, columns, label
-from bench.trade.plots import by_scene, draw_differences, frontier, plot_overview
+from bench.trade.choices import CHOICES, METHODS_ALONE, YARDSTICK, choices, columns, label
+from bench.trade.plots import SHOWN, by_scene, frontier, pictured, plot_differences, plot_frontier
 from environment import Problem
 from measuring.drawing import draw_in_turn, holes
 from splat_addon.reference import render_exact
@@ -53,24 +53,33 @@ def run_methods(renderer: Renderer, options, report) -> None:
     names = options.scenes or [c.name for c in CASES.values() if c.is_promised or not options.quick]
     names = names[: 1 if options.quick and not options.scenes else None]
     chosen = choices(options.choices, renderer.device.multisample_counts)
-    rows, skipped = [], {}
+    rows, skipped, shown = [], {}, {}
     for name in names:
         try:
-            rows += measure(CASES[name], renderer, chosen, options, report)
+            rows += measure(CASES[name], renderer, chosen, options, report, shown)
         except FileNotFoundError as error:
             skipped[name] = str(error)
             report.say(f"**Skipped: {name}**. {error}.")
             continue
         report.csv("trade", rows)
-        report.plot("overview", plot_overview(rows))
+        report.plot("frontier", plot_frontier([row for row in rows if CASES[row["scene"]].is_promised] or rows))
+        if shown:
+            report.plot("differences", plot_differences(shown))
     if not rows:
         raise Problem(f"Nothing was measured. {'; '.join(skipped.values())}.")
+    promised = [row for row in rows if CASES[row["scene"]].is_promised]
+    others = [row for row in rows if not CASES[row["scene"]].is_promised]
     for name in PIXEL_FILTERS:
         about = f"PSNR in dB / mean FLIP under the {name} pixel filter; times are in that of {label(YARDSTICK)}:"
-        report.table(["", *by_scene(rows), "time"], summary(rows, chosen, name), about)
+        for some in filter(None, (promised, others)):
+            report.table(["", *by_scene(some), "time"], summary(some, chosen, name), about)
     best = {id(row) for mine in by_scene(rows).values() for row in frontier(mine)}
     lines = [[*row.values(), "*" if id(row) in best else ""] for row in rows]
-    report.table([*rows[0], ""], lines, "Every row; * is on the frontier of FLIP (gaussian) and time:")
+    report.table(
+        [*rows[0], ""],
+        lines,
+        "Every row; * is on the frontier of FLIP, under the filter that it is closer to, and time:",
+    )
 
 
 def run_numbers(renderer: Renderer, options, report) -> None:
@@ -109,8 +118,12 @@ PARTS = {
 }
 
 
-def measure(case, renderer: Renderer, chosen: list[Settings], options, report) -> list[dict]:
-    """The rows of one scene; its plot and pictures are left in the folder."""
+def measure(case, renderer: Renderer, chosen: list[Settings], options, report, shown: dict) -> list[dict]:
+    """The rows of one scene. Other poses than the promised are drawn with the methods alone, in one turn. shown: gets
+    the pictures of the scenes that are pictured."""
+    if not case.is_promised:
+        chosen = [settings for settings in chosen if settings in METHODS_ALONE]
+    turns = options.turns if case.is_promised else 1
     scene, camera = case.build(View(options.size, options.models))
     lit = replace(YARDSTICK, shading=case.shading)
     truth = partial(remembered(render_exact), scene, camera, lit, samples=options.samples)
@@ -119,7 +132,7 @@ def measure(case, renderer: Renderer, chosen: list[Settings], options, report) -
     def draw(settings):
         return renderer.render(scene, camera, replace(settings, shading=case.shading))
 
-    drawn = draw_in_turn(draw, chosen, options.turns, steps=lambda turns: report.steps(turns, case.name))
+    drawn = draw_in_turn(draw, chosen, turns, steps=lambda turns: report.steps(turns, case.name))
     rows = []
     for settings in chosen:
         times = {"ratio": (drawn.ratio(settings, YARDSTICK), 2), "ms": (drawn.spread(settings), 1)}
@@ -130,7 +143,9 @@ def measure(case, renderer: Renderer, chosen: list[Settings], options, report) -
         for name, (spread, digits) in times.items():
             ends = ((name, spread.median), (f"{name}_min", spread.least), (f"{name}_max", spread.most))
             rows[-1] |= {key: round(value, digits) for key, value in ends}
-    draw_differences(case.name.replace(" ", "-"), drawn.results, exact["gaussian"], report)
+    if case.name in SHOWN:
+        colors = {settings: frame.color for settings, frame in drawn.results.items()}
+        shown[case.name] = pictured(colors, exact["gaussian"].color)
     return rows
 
 
@@ -149,6 +164,8 @@ def summary(rows: list[dict], chosen: list[Settings], name: str):
     for settings in chosen:
         wanted = columns(settings).items()
         mine = [row for row in rows if wanted <= row.items()]
+        if not mine:
+            continue
         ratios = [row["ratio"] for row in mine]
         time = f"{geometric_mean(ratios):.1f} ({min(ratios):.1f} to {max(ratios):.1f})"
         of_all = {p.label: replace(p.of(YARDSTICK), detail_tolerance=0.0) for p in PRESETS.values()}

@@ -10,60 +10,80 @@ import numpy as np
 matplotlib.use("Agg")
 from matplotlib import pyplot, ticker
 
-from bench.trade.choices import FORMATS, PICTURED, label
-from splat_addon.reference.metrics import flip_map, mean_flip, srgb
+from bench.trade.choices import PICTURED, label
+from splat_addon.differences import flip, srgb
 from splat_addon.rendering.methods import METHODS
+from splat_addon.trade.page import magma
 
-COLORS = dict(zip(METHODS, pyplot.cm.tab10.colors))
+COLORS = dict(zip(METHODS, (*pyplot.cm.tab10.colors, "0.2", "0.5")))
+
+#: Pixels an inch of the figures: what is set in points can be read without enlarging.
+_DPI = 100
+
+#: Scenes of the pictures.
+SHOWN = "text", "torus"
 
 
 def by_scene(rows: list[dict]) -> dict[str, list[dict]]:
     return {scene: [row for row in rows if row["scene"] == scene] for scene in dict.fromkeys(r["scene"] for r in rows)}
 
 
-def frontier(rows: list[dict], error: str = "flip_gaussian", cost: str = "ratio") -> list[dict]:
+def nearer(row: dict) -> tuple[str, float]:
+    """The pixel filter that a row is closer to, and its FLIP."""
+    return min((("gaussian", row["flip_gaussian"]), ("box", row["flip_box"])), key=lambda pair: pair[1])
+
+
+def frontier(rows: list[dict]) -> list[dict]:
     """The rows of a scene that no other row beats in both time and FLIP, fastest first; of equal rows the first."""
     kept = []
-    for row in sorted(rows, key=lambda row: (row[cost], row[error])):
-        if not kept or row[error] < kept[-1][error]:
+    for row in sorted(rows, key=lambda row: (row["ratio"], nearer(row)[1])):
+        if not kept or nearer(row)[1] < nearer(kept[-1])[1]:
             kept.append(row)
     return kept
 
 
-def plot_overview(rows: list[dict]):
-    """All scenes under the Gaussian, with times relative to the yardstick."""
+def plot_frontier(rows: list[dict]):
+    """All scenes, each choice under the filter that it is closer to, with times relative to the yardstick."""
     scenes = by_scene(rows)
-    across = min(len(scenes), 3)
+    across = min(len(scenes), 2)
     down = -(-len(scenes) // across)
-    size = (3.2 * across, 2.5 * down)
-    figure, axes = pyplot.subplots(down, across, figsize=size, layout="constrained", squeeze=False)
+    size = (4.5 * across, 3.2 * down + 0.6)
+    figure, axes = pyplot.subplots(down, across, figsize=size, dpi=_DPI, layout="constrained", squeeze=False)
     for axis in axes.flat[len(scenes) :]:
         axis.set_visible(False)
     for axis, (scene, mine) in zip(axes.flat, scenes.items()):
-        _panel(axis, mine, "flip_gaussian", "ratio")
-        axis.set_title(scene, fontsize=9)
-        axis.tick_params(labelsize=7, which="both")
+        _panel(axis, mine)
+        axis.set_title(scene, fontsize=11)
     # Beside the panels, because inside one it would hide points.
-    figure.legend(*axes.flat[0].get_legend_handles_labels(), loc="outside upper center", ncols=8, fontsize=6)
-    figure.supxlabel("time in that of quads with one sample", fontsize=9)
-    figure.supylabel("mean FLIP, Gaussian filter", fontsize=9)
+    known = [name for name in COLORS if any(row["method"] == name for row in rows)]
+    handles = [_shown("o", COLORS[name], METHODS[name].label) for name in known]
+    handles += [_shown("o", "0.4", "Gaussian pixel"), _shown("s", "0.4", "box pixel")]
+    figure.legend(handles=handles, loc="outside upper center", ncols=2 * across, fontsize=9)
+    figure.supxlabel("time in that of Quads with one sample", fontsize=10)
+    figure.supylabel("mean FLIP", fontsize=10)
     return figure
 
 
-def _panel(axis, rows: list[dict], error: str, cost: str) -> None:
-    best = frontier(rows, error, cost)
-    axis.step([r[cost] for r in best], [r[error] for r in best], color="0.7", where="post", zorder=0)
+def _shown(shape: str, color, name: str):
+    """An entry of the legend."""
+    return pyplot.Line2D([], [], linestyle="", marker=shape, color=color, label=name)
+
+
+def _panel(axis, rows: list[dict]) -> None:
+    best = frontier(rows)
+    axis.step([r["ratio"] for r in best], [nearer(r)[1] for r in best], color="0.7", where="post", zorder=0)
     for method, color in COLORS.items():
-        mine = [row for row in rows if row["method"] == method]
-        if not mine:
-            continue
-        plain = (all(row[name] == next(iter(values)) for name, values in FORMATS.items()) for row in mine)
-        faces = [color if is_plain else "white" for is_plain in plain]
-        x, y = [row[cost] for row in mine], [row[error] for row in mine]
-        axis.scatter(x, y, c=faces, edgecolors=[color] * len(mine), s=22, label=METHODS[method].label)
-        for row, place in zip(mine, zip(x, y)):
-            axis.annotate(row["samples"][0], place, fontsize=6, xytext=(3, 2), textcoords="offset points")
+        for row in (row for row in rows if row["method"] == method):
+            face = "white" if row["multisampling"] else color
+            shape = "o" if nearer(row)[0] == "gaussian" else "s"
+            axis.scatter(row["ratio"], nearer(row)[1], c=[face], edgecolors=[color], s=34, marker=shape)
+    for number, row in enumerate(best):
+        name = f"{METHODS[row['method']].label} {row['samples'].replace(' ', '')}"
+        way = (5, 5) if number % 2 == 0 else (5, -13)
+        axis.annotate(name, (row["ratio"], nearer(row)[1]), fontsize=9, xytext=way, textcoords="offset points")
     axis.set(xscale="log", yscale="log")
+    axis.margins(x=0.25, y=0.12)
+    axis.tick_params(labelsize=9, which="both")
     for side in (axis.xaxis, axis.yaxis):
         side.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
         side.set_major_formatter("{x:g}")
@@ -71,12 +91,27 @@ def _panel(axis, rows: list[dict], error: str, cost: str) -> None:
     axis.grid(alpha=0.3)
 
 
-def draw_differences(name: str, frames: dict, truth, report) -> None:
-    """The reference, then one column for each chosen frame, with its FLIP map below."""
-    shown = {label(settings): frame.color[..., :3] for settings, frame in frames.items() if settings in PICTURED}
-    truth = truth.color[..., :3]
-    labels = (f"{label} {mean_flip(color, truth):.4f}" for label, color in shown.items())
-    report.say(f"{name}, FLIP under the Gaussian: {'; '.join(labels)}.")
-    above = [srgb(np.nan_to_num(color)) for color in (truth, *shown.values())]
-    below = [flip_map(color, truth) for color in (truth, *shown.values())]
-    report.picture(f"{name}-differences", above + below, columns=len(above), encode=None)
+def pictured(drawn: dict, truth: np.ndarray) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """What `plot_differences` shows of a scene: name -> a picture as a screen shows it, and its FLIP as colours.
+
+    drawn: settings -> (h, w, 4). truth: of the Gaussian.
+    """
+    colors = {"exact": truth[..., :3]} | {label(s): color[..., :3] for s, color in drawn.items() if s in PICTURED}
+    return {name: (srgb(np.nan_to_num(color)), magma(flip(color, truth[..., :3]))) for name, color in colors.items()}
+
+
+def plot_differences(shown: dict[str, dict]):
+    """The exact picture of each scene and some choices beside it; below each its FLIP under the Gaussian."""
+    names = list(next(iter(shown.values())))
+    size = (1.8 * len(names), 3.6 * len(shown) + 0.3)
+    figure, axes = pyplot.subplots(
+        2 * len(shown), len(names), figsize=size, dpi=_DPI, layout="constrained", squeeze=False
+    )
+    for axis in axes.flat:
+        axis.set_axis_off()
+    for row, pictures in enumerate(shown.values()):
+        for column, name in enumerate(names):
+            axes[2 * row, column].set_title(name if row == 0 else "", fontsize=10)
+            for below, picture in enumerate(pictures[name][: 1 if column == 0 else 2]):
+                axes[2 * row + below, column].imshow(np.clip(picture, 0, 1), origin="lower", interpolation="nearest")
+    return figure

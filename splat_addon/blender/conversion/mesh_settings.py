@@ -9,7 +9,15 @@ from typing import NamedTuple
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
 
-from ...sampling import LEAST_GRAZING_ANGLE, REDUCTIONS, SamplingOptions
+from ...sampling import (
+    LARGEST_ERROR,
+    LEAST_ERROR,
+    LEAST_GRAZING_ANGLE,
+    REDUCTIONS,
+    SamplingOptions,
+    error_at,
+    pixels_for,
+)
 from ..density_properties import (
     DENSITIES,
     normal_fields_property,
@@ -283,6 +291,21 @@ def _choose_quality(settings: SurfelConversionSettings, number: int) -> None:
         settings.density, settings.pixels = "AUTOMATIC", list(QUALITIES.values())[number].pixels
 
 
+def expected_error(settings: SurfelConversionSettings) -> tuple[float, float] | None:
+    """Typical and worst error of surfels at the chosen density; None where it does not follow the camera, or was never
+    measured."""
+    return error_at(settings.pixels) if settings.density in ("AUTOMATIC", "CAMERA") else None
+
+
+def _error(settings: SurfelConversionSettings) -> float:
+    return (expected_error(settings) or (LARGEST_ERROR,))[0]
+
+
+def _choose_error(settings: SurfelConversionSettings, error: float) -> None:
+    settings.density = "AUTOMATIC"
+    settings.pixels = pixels_for(min(max(error, LEAST_ERROR), LARGEST_ERROR))
+
+
 class SurfelConversionSettings(ConversionProperties, bpy.types.PropertyGroup):
     """The settings of the sidebar for the next conversion, and those that a surfel object was converted with."""
 
@@ -295,6 +318,18 @@ class SurfelConversionSettings(ConversionProperties, bpy.types.PropertyGroup):
         ],
         get=_quality,
         set=_choose_quality,
+    )
+    error: FloatProperty(
+        name="Error",
+        description=(
+            "How far the surfels will look from the mesh, as the mean perceived difference (FLIP) over what the object "
+            "covers, and the density that this takes. Few people see less than 0.01"
+        ),
+        min=LEAST_ERROR,
+        max=LARGEST_ERROR,
+        precision=3,
+        get=_error,
+        set=_choose_error,
     )
 
 

@@ -1253,6 +1253,17 @@ GERMAN = {
         "Geht auch, während die Quelle bearbeitet, bemalt oder modelliert wird"
     ),
     "Draft": "Entwurf",
+    "Error up to {worst} where parts are a few pixels small": (
+        "Fehler bis {worst}, wo Teile nur wenige Pixel klein sind"
+    ),
+    (
+        "How far the surfels will look from the mesh, as the mean perceived difference (FLIP) over what the object "
+        "covers, and the density that this takes. Few people see less than 0.01"
+    ): (
+        "Wie sehr sich die Surfels sichtbar vom Mesh unterscheiden werden, als mittlerer wahrgenommener Unterschied "
+        "(FLIP) über das, was das Objekt bedeckt, und die Dichte, die das braucht. Wenige Menschen sehen weniger als "
+        "0,01"
+    ),
     "Edges": "Kanten",
     "Files": "Dateien",
     "Fine": "Fein",

@@ -16,6 +16,7 @@ from ..conversion.mesh_settings import (
     draw_edges,
     draw_looks,
     draw_once,
+    expected_error,
 )
 from ..conversion.points_settings import (
     POINTS_NAMES,
@@ -175,6 +176,10 @@ def _draw_quality(layout: bpy.types.UILayout, what: Chosen, settings, context: b
     row = layout.row(align=True)
     for name in QUALITIES:
         row.prop_enum(settings, "quality", name)
+    if error := expected_error(settings):
+        layout.prop(settings, "error")
+        worst = said("Error up to {worst} where parts are a few pixels small", worst=f"{error[1]:.2g}")
+        write(layout, worst, context, "BLANK1")
     if what.kind is NOTHING or context.mode != "OBJECT":
         return
     sources = sources_of(what.made) if what.kind is SURFELS else selected_sources(context)

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How far surfels are from their mesh at a density, and the density for an error, from what was measured.
+
+`MEASURED` is the representation error of five meshes (a drilled plate, fandisk, a truck, spot and the armadillo): the
+mean FLIP over the pixels that the mesh touches between exact pictures of the surfels and of the mesh, under the pixel
+filter where it is larger. `bench.py trade --parts densities` measures it. Typical is the geometric mean of the meshes;
+the worst is always the truck, whose parts are a few pixels small.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+#: Pixels between surfels -> (typical, worst) FLIP.
+MEASURED = {
+    0.375: (0.01, 0.02),
+    0.5: (0.011, 0.02),
+    0.75: (0.012, 0.02),
+    1.0: (0.013, 0.02),
+    1.5: (0.014, 0.02),
+    2.0: (0.015, 0.02),
+    3.0: (0.016, 0.02),
+}
+
+_PIXELS = np.array(list(MEASURED))
+_TYPICAL, _WORST = np.array(list(MEASURED.values())).T
+
+#: The least and the largest typical error for which `pixels_for` knows a density.
+LEAST_ERROR, LARGEST_ERROR = float(_TYPICAL[0]), float(_TYPICAL[-1])
+
+
+def error_at(pixels: float) -> tuple[float, float] | None:
+    """(typical, worst) FLIP of surfels that are this far apart; None beyond what was measured."""
+    if not _PIXELS[0] <= pixels <= _PIXELS[-1]:
+        return None
+    return tuple(float(np.exp(np.interp(np.log(pixels), np.log(_PIXELS), np.log(each)))) for each in (_TYPICAL, _WORST))
+
+
+def pixels_for(error: float) -> float:
+    """The pixels between surfels at which the typical FLIP is `error`. Raises ValueError for one that was not
+    measured."""
+    if not LEAST_ERROR <= error <= LARGEST_ERROR:
+        raise ValueError(f"An error of surfels must be {LEAST_ERROR:g} to {LARGEST_ERROR:g} (FLIP), not {error:g}.")
+    return float(np.exp(np.interp(np.log(error), np.log(_TYPICAL), np.log(_PIXELS))))
