@@ -26,7 +26,7 @@ def measured(pixel: str) -> dict[str, tuple[float, list[float]]]:
     """What the page's table for a pixel filter holds: row -> (time, FLIP of each scene), of rows with a time."""
     (table,) = (each for each in tables("evidence/trade.md") if each[0][0] == f"{pixel} pixel")
     rows = (row for row in table[1:] if row[-1])
-    return {row[0]: (float(row[-1]), [float(cell.split("/")[1]) for cell in row[1:-1]]) for row in rows}
+    return {row[0]: (float(row[-1].split()[0]), [float(cell.split("/")[1]) for cell in row[1:-1]]) for row in rows}
 
 
 def method_of(label: str) -> str:

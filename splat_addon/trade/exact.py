@@ -20,8 +20,8 @@ from ..rendering.assembly.accumulation import pixel_offset, sample_camera
 #: Samples along each side of a pixel of each picture.
 _BOX_EDGE, _GAUSSIAN_EDGE = 4, 2
 
-#: Variance of the places of pictures, square pixels: that of the Gaussian pixel without that of the grid of samples that
-#: each picture has.
+#: Variance of the places of pictures, square pixels: that of the Gaussian pixel without that of the samples of each
+#: picture, which are a grid.
 _GAUSSIAN = Settings.filter_variance - (1 - 1 / _GAUSSIAN_EDGE**2) / 12
 
 #: Told the finished share; returns False to cancel.

@@ -5,6 +5,7 @@ import subprocess
 import sys
 from importlib.util import find_spec
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -52,6 +53,21 @@ def test_everything_listed_can_be_imported_and_takes_its_arguments():
     )
     done = in_one_process(code)
     assert done.returncode == 0, done.stderr
+
+
+def test_all_runs_each_and_tells_which_failed(monkeypatch, capsys):
+    from measuring import every
+
+    ran = []
+
+    def run(args, **_):
+        ran.append(args[4:])
+        return SimpleNamespace(returncode=int(args[4] == "lod"))
+
+    monkeypatch.setattr(every.subprocess, "run", run)
+    assert every.run_every(Path(sys.executable), ["--quick"]) == 1
+    assert ran == [[name, "--quick"] for name in modules()]
+    assert "failed: lod" in capsys.readouterr().out.splitlines()[-1]
 
 
 def test_swift_ones_leave_pages_that_say_how_they_were_come_by(benches, tmp_path):

@@ -49,7 +49,7 @@ def measure_densities(renderer: Renderer, options, report) -> Iterator[dict]:
         corners, colors = mesh.positions[mesh.triangles], mesh.corner_colors[..., :3]
         truths = {kind: remembered(render_triangles)(corners, colors, camera, pixel_filter=kind) for kind in _OF_FILTER}
         tried = [(pixels, "normal") for pixels in PIXELS] + [(_COMPARED, each) for each in REDUCTIONS[1:]]
-        for pixels, reduction in tried:
+        for pixels, reduction in tried[2::4] if options.quick else tried:
             surfels = _converted(mesh, _spacing(surface, camera, pixels), reduction)
             drawn = _errors(renderer, Scene((surfels,)), camera, truths)
             yield {
@@ -96,6 +96,8 @@ def density_lines(rows: list[dict]) -> Iterator[list]:
     normal = [row for row in rows if row["reduction"] == "normal"]
     for pixels in PIXELS:
         mine = [row for row in normal if row["pixels"] == pixels]
+        if not mine:
+            continue
         first = [row for row in normal if row["pixels"] == _COMPARED]
         yield [f"{pixels:g}", *_cells(mine, first)]
 
@@ -107,6 +109,8 @@ def reduction_lines(rows: list[dict]) -> Iterator[list]:
             [row for row in rows if row["pixels"] == _COMPARED and row["reduction"] == each]
             for each in (reduction, "normal")
         )
+        if not mine:
+            continue
         yield [reduction.replace("_", " "), *_cells(mine, first)]
 
 

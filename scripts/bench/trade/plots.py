@@ -20,45 +20,43 @@ COLORS = dict(zip(METHODS, (*pyplot.cm.tab10.colors, "0.2", "0.5")))
 #: Pixels an inch of the figures: what is set in points can be read without enlarging.
 _DPI = 100
 
-#: Scenes of the pictures.
-SHOWN = "text", "torus"
+#: What is behind a name, so that it can be read over points and lines.
+_PLATE = {"facecolor": "white", "alpha": 0.7, "edgecolor": "none", "pad": 0.5}
+
+#: Scenes of the plot, and of the pictures.
+PLOTTED, SHOWN = ("checker200", "text", "armadillo"), ("text", "torus")
 
 
 def by_scene(rows: list[dict]) -> dict[str, list[dict]]:
     return {scene: [row for row in rows if row["scene"] == scene] for scene in dict.fromkeys(r["scene"] for r in rows)}
 
 
-def nearer(row: dict) -> tuple[str, float]:
-    """The pixel filter that a row is closer to, and its FLIP."""
-    return min((("gaussian", row["flip_gaussian"]), ("box", row["flip_box"])), key=lambda pair: pair[1])
-
-
-def frontier(rows: list[dict]) -> list[dict]:
-    """The rows of a scene that no other row beats in both time and FLIP, fastest first; of equal rows the first."""
+def frontier(rows: list[dict], error: str) -> list[dict]:
+    """The rows of a scene that no other row beats in both time and FLIP, fastest first; of equal rows the first. error:
+    the column of FLIP."""
     kept = []
-    for row in sorted(rows, key=lambda row: (row["ratio"], nearer(row)[1])):
-        if not kept or nearer(row)[1] < nearer(kept[-1])[1]:
+    for row in sorted(rows, key=lambda row: (row["ratio"], row[error])):
+        if not kept or row[error] < kept[-1][error]:
             kept.append(row)
     return kept
 
 
 def plot_frontier(rows: list[dict]):
-    """All scenes, each choice under the filter that it is closer to, with times relative to the yardstick."""
+    """Some scenes, under the Gaussian and the box, with times relative to the yardstick."""
     scenes = by_scene(rows)
-    across = min(len(scenes), 2)
-    down = -(-len(scenes) // across)
-    size = (4.5 * across, 3.2 * down + 0.6)
-    figure, axes = pyplot.subplots(down, across, figsize=size, dpi=_DPI, layout="constrained", squeeze=False)
-    for axis in axes.flat[len(scenes) :]:
-        axis.set_visible(False)
-    for axis, (scene, mine) in zip(axes.flat, scenes.items()):
-        _panel(axis, mine)
-        axis.set_title(scene, fontsize=11)
+    scenes = {name: mine for name, mine in scenes.items() if name in PLOTTED} or scenes
+    figure, axes = pyplot.subplots(
+        len(scenes), 2, figsize=(9, 3 * len(scenes) + 0.9), dpi=_DPI, layout="constrained", squeeze=False
+    )
+    for across, (scene, mine) in zip(axes, scenes.items()):
+        for axis, kind in zip(across, ("gaussian", "box")):
+            _panel(axis, mine, f"flip_{kind}")
+            axis.set_title(f"{scene}, {kind.title()} pixel", fontsize=11)
     # Beside the panels, because inside one it would hide points.
     known = [name for name in COLORS if any(row["method"] == name for row in rows)]
     handles = [_shown("o", COLORS[name], METHODS[name].label) for name in known]
-    handles += [_shown("o", "0.4", "Gaussian pixel"), _shown("s", "0.4", "box pixel")]
-    figure.legend(handles=handles, loc="outside upper center", ncols=2 * across, fontsize=9)
+    handles.append(pyplot.Line2D([], [], linestyle="", marker="o", mfc="white", mec="0.3", label="hardware samples"))
+    figure.legend(handles=handles, loc="outside upper center", ncols=4, fontsize=9)
     figure.supxlabel("time in that of Quads with one sample", fontsize=10)
     figure.supylabel("mean FLIP", fontsize=10)
     return figure
@@ -69,18 +67,18 @@ def _shown(shape: str, color, name: str):
     return pyplot.Line2D([], [], linestyle="", marker=shape, color=color, label=name)
 
 
-def _panel(axis, rows: list[dict]) -> None:
-    best = frontier(rows)
-    axis.step([r["ratio"] for r in best], [nearer(r)[1] for r in best], color="0.7", where="post", zorder=0)
-    for method, color in COLORS.items():
-        for row in (row for row in rows if row["method"] == method):
-            face = "white" if row["multisampling"] else color
-            shape = "o" if nearer(row)[0] == "gaussian" else "s"
-            axis.scatter(row["ratio"], nearer(row)[1], c=[face], edgecolors=[color], s=34, marker=shape)
+def _panel(axis, rows: list[dict], error: str) -> None:
+    best = frontier(rows, error)
+    axis.step([r["ratio"] for r in best], [r[error] for r in best], color="0.7", where="post", zorder=0)
+    for row in rows:
+        color = COLORS[row["method"]]
+        face = "white" if row["multisampling"] else color
+        axis.scatter(row["ratio"], row[error], c=[face], edgecolors=[color], s=34)
     for number, row in enumerate(best):
-        name = f"{METHODS[row['method']].label} {row['samples'].replace(' ', '')}"
+        samples = "4 in hardware" if row["multisampling"] else row["samples"].replace(" ", "")
         way = (5, 5) if number % 2 == 0 else (5, -13)
-        axis.annotate(name, (row["ratio"], nearer(row)[1]), fontsize=9, xytext=way, textcoords="offset points")
+        name = f"{METHODS[row['method']].label} {samples}"
+        axis.annotate(name, (row["ratio"], row[error]), fontsize=9, xytext=way, textcoords="offset points", bbox=_PLATE)
     axis.set(xscale="log", yscale="log")
     axis.margins(x=0.25, y=0.12)
     axis.tick_params(labelsize=9, which="both")
