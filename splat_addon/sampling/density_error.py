@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How far surfels are from their mesh at a density, and the density for an error, from what was measured.
 
-`MEASURED` is the representation error of five meshes (a drilled plate, fandisk, a truck, spot and the armadillo): the
-mean FLIP over the pixels that the mesh touches between exact pictures of the surfels and of the mesh, under the pixel
-filter where it is larger. `bench.py trade --parts densities` measures it. Typical is the geometric mean of the meshes;
-the worst is always the truck, whose parts are a few pixels small.
+`MEASURED` is the representation error of five meshes (a drilled plate, fandisk, a truck, spot, the armadillo) that are
+less than a hundred pixels tall: the mean FLIP over the pixels that the mesh touches, between exact pictures of the
+surfels and of the mesh, under the pixel filter where it is larger. Measured by `bench.py trade --parts densities --size
+96`. Typical is the geometric mean of the meshes; the worst is the armadillo, whose detail is finer than a pixel. A mesh
+that is larger in the picture has less detail a pixel, and is closer.
 """
 
 from __future__ import annotations
@@ -13,17 +14,20 @@ import numpy as np
 
 #: Pixels between surfels -> (typical, worst) FLIP.
 MEASURED = {
-    0.375: (0.01, 0.02),
-    0.5: (0.011, 0.02),
-    0.75: (0.012, 0.02),
-    1.0: (0.013, 0.02),
-    1.5: (0.014, 0.02),
-    2.0: (0.015, 0.02),
-    3.0: (0.016, 0.02),
+    0.375: (0.0175, 0.0389),
+    0.5: (0.0200, 0.0543),
+    0.75: (0.0258, 0.0813),
+    1.0: (0.0332, 0.1183),
+    1.5: (0.0498, 0.1944),
+    2.0: (0.0703, 0.2826),
+    3.0: (0.1180, 0.4672),
 }
 
 _PIXELS = np.array(list(MEASURED))
 _TYPICAL, _WORST = np.array(list(MEASURED.values())).T
+
+#: More than the relative error of single precision, in which Blender stores its properties.
+_ROUNDING = 1e-6
 
 #: The least and the largest typical error for which `pixels_for` knows a density.
 LEAST_ERROR, LARGEST_ERROR = float(_TYPICAL[0]), float(_TYPICAL[-1])
@@ -31,7 +35,7 @@ LEAST_ERROR, LARGEST_ERROR = float(_TYPICAL[0]), float(_TYPICAL[-1])
 
 def error_at(pixels: float) -> tuple[float, float] | None:
     """(typical, worst) FLIP of surfels that are this far apart; None beyond what was measured."""
-    if not _PIXELS[0] <= pixels <= _PIXELS[-1]:
+    if not _PIXELS[0] * (1 - _ROUNDING) <= pixels <= _PIXELS[-1] * (1 + _ROUNDING):
         return None
     return tuple(float(np.exp(np.interp(np.log(pixels), np.log(_PIXELS), np.log(each)))) for each in (_TYPICAL, _WORST))
 

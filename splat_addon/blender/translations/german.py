@@ -1253,16 +1253,16 @@ GERMAN = {
         "Geht auch, während die Quelle bearbeitet, bemalt oder modelliert wird"
     ),
     "Draft": "Entwurf",
-    "Error up to {worst} where parts are a few pixels small": (
-        "Fehler bis {worst}, wo Teile nur wenige Pixel klein sind"
+    "Error up to {worst} where detail is finer than a pixel": (
+        "Fehler bis {worst}, wo Einzelheiten feiner als ein Pixel sind"
     ),
     (
-        "How far the surfels will look from the mesh, as the mean perceived difference (FLIP) over what the object "
-        "covers, and the density that this takes. Few people see less than 0.01"
+        "How far surfels look from the mesh, as the mean perceived difference (FLIP) over what an object covers, and "
+        "the density that this takes. Measured on five models less than 100 pixels tall; larger ones are closer"
     ): (
-        "Wie sehr sich die Surfels sichtbar vom Mesh unterscheiden werden, als mittlerer wahrgenommener Unterschied "
-        "(FLIP) über das, was das Objekt bedeckt, und die Dichte, die das braucht. Wenige Menschen sehen weniger als "
-        "0,01"
+        "Wie sehr Surfels anders aussehen als das Mesh, als mittlerer wahrgenommener Unterschied (FLIP) über das, was "
+        "ein Objekt bedeckt, und die Dichte, die das braucht. Gemessen an fünf Modellen, die weniger als 100 Pixel "
+        "hoch sind; größere sind näher"
     ),
     "Edges": "Kanten",
     "Files": "Dateien",

@@ -178,7 +178,7 @@ def _draw_quality(layout: bpy.types.UILayout, what: Chosen, settings, context: b
         row.prop_enum(settings, "quality", name)
     if error := expected_error(settings):
         layout.prop(settings, "error")
-        worst = said("Error up to {worst} where parts are a few pixels small", worst=f"{error[1]:.2g}")
+        worst = said("Error up to {worst} where detail is finer than a pixel", worst=f"{error[1]:.2g}")
         write(layout, worst, context, "BLANK1")
     if what.kind is NOTHING or context.mode != "OBJECT":
         return
