@@ -34,7 +34,8 @@ class LightProperties:
     ambient_occlusion_distance: FloatProperty(
         name="Distance",
         description=(
-            "How far away a surface can be and still block the world's light; 0 for half the distance to the camera"
+            "How far away a surface can be and still block the world's light; 0 for half the distance to the camera, "
+            "and for none with Captured Color"
         ),
         subtype="DISTANCE",
         min=0.0,

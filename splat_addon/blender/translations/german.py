@@ -532,9 +532,12 @@ GERMAN = {
     "Homogeneous, as Printed": "Homogen, wie gedruckt",
     "How often light is reflected from surface to surface": "Wie oft Licht von Fläche zu Fläche reflektiert wird",
     "How a splat is drawn and filtered": "Wie ein Splat gezeichnet und gefiltert wird",
-    ("How far away a surface can be and still block the world's light; 0 for half the distance to the camera"): (
+    (
+        "How far away a surface can be and still block the world's light; 0 for half the distance to the camera, and "
+        "for none with Captured Color"
+    ): (
         "Wie weit entfernt eine Fläche sein und das Licht der Welt noch abhalten kann; bei 0 halb so weit wie die "
-        "Kamera"
+        "Kamera, und bei Aufgenommener Farbe keine"
     ),
     (
         "How far behind the nearest splat others still blend with it, in splat radii. Lower values separate "
