@@ -96,21 +96,35 @@ def entries_of(hierarchy: Hierarchy, rows: np.ndarray) -> np.ndarray | None:
 def cut_blocks(blocks: Blocks, sight: Sight) -> np.ndarray:
     """(n,) int32, the indices of the blocks that are drawn."""
     front, drawn = np.arange(int(blocks.roots)), []
+    first = _judged(blocks, np.arange(min(len(blocks), _AT_ONCE)), sight)
     while len(front):
-        boxes = Boxes.of(blocks, front)
-        # errors of unseen blocks, too: leaving their boxes out would take longer
-        is_seen = may_be_seen(blocks, front, boxes, sight)
-        is_fine = pixels_of_errors(blocks, front, boxes, sight) <= sight.tolerance
-        if sight.split:
-            near, far = distances(boxes, sight)
-            is_seen &= far >= sight.split.begin
-            is_fine &= near > sight.split.end
-        first, last = blocks.first_child[front], blocks.last_child[front]
-        is_fine |= first == last
+        # children follow their parents, so that the last of a front is its largest number
+        is_known = front[-1] < len(first[0])
+        is_seen, is_fine = (known[front] for known in first) if is_known else _judged(blocks, front, sight)
+        begin, end = blocks.first_child[front], blocks.last_child[front]
+        is_fine = is_fine | (begin == end)
         drawn.append(front[is_seen & is_fine])
         is_coarse = is_seen & ~is_fine
-        front = ranges(first[is_coarse], (last - first)[is_coarse])
+        front = ranges(begin[is_coarse], (end - begin)[is_coarse])
     return np.concatenate(drawn).astype(np.int32) if drawn else np.zeros(0, np.int32)
+
+
+#: Blocks of the coarsest levels that are judged at once, whether they are asked for or not: levels of few blocks take
+#: as long.
+_AT_ONCE = 288
+
+
+def _judged(blocks: Blocks, rows: np.ndarray, sight: Sight) -> tuple[np.ndarray, np.ndarray]:
+    """(n,) bool: which blocks may be seen, and which are fine enough."""
+    boxes = Boxes.of(blocks, rows)
+    # errors of unseen blocks, too: leaving their boxes out would take longer
+    is_seen = may_be_seen(blocks, rows, boxes, sight)
+    is_fine = pixels_of_errors(blocks, rows, boxes, sight) <= sight.tolerance
+    if sight.split:
+        near, far = distances(boxes, sight)
+        is_seen &= far >= sight.split.begin
+        is_fine &= near > sight.split.end
+    return is_seen, is_fine
 
 
 def pixels_of_errors(blocks: Blocks, rows: np.ndarray, boxes: Boxes, sight: Sight) -> np.ndarray:
