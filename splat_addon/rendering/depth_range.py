@@ -113,8 +113,7 @@ def seen_by(table: InstanceTable, camera: Camera) -> Seen:
     """The instances that may be in the picture. Of far-reaching triangles, the boxes are those of what is in the view
     volume."""
     firm, from_eye = table.firm, table.firm.from_eye(camera)
-    are_beyond = beyond(from_eye.corners.reshape(-1, 3), camera).reshape(6, -1, 8)
-    inside = ~are_beyond.all(axis=2).any(axis=0)
+    inside = ~are_outside(from_eye.corners, camera)
     if len(firm.reaching):
         corners = from_eye.corners.copy()
         for row in firm.reaching.tolist():
@@ -129,20 +128,23 @@ def seen_by(table: InstanceTable, camera: Camera) -> Seen:
     return Seen(firm.taken(inside), from_eye.taken(inside), outside, degenerate)
 
 
-def beyond(corners: np.ndarray, camera: Camera) -> np.ndarray:
-    """(6, n) for each plane of the camera's view volume, which of n points in view space are beyond it."""
-    x, y, depth = corners[:, 0], corners[:, 1], -corners[:, 2]
+def are_outside(corners: np.ndarray, camera: Camera) -> np.ndarray:
+    """(n,) bool: whether (n, 8, 3) corners of a box, in view space, are all beyond one plane of the view volume."""
+    return np.logical_or.reduce([are.all(axis=1) for are in beyond(corners, camera)])
+
+
+def beyond(places: np.ndarray, camera: Camera) -> tuple[np.ndarray, ...]:
+    """For each plane of the camera's view volume, (...) bool: which of (..., 3) places in view space are beyond it."""
+    x, y, depth = places[..., 0], places[..., 1], -places[..., 2]
     left, right, bottom, top = camera.window
     spread = 1.0 if camera.is_orthographic else depth
-    return np.array(
-        [
-            depth < camera.near,
-            depth > camera.far,
-            x < left * spread,
-            x > right * spread,
-            y < bottom * spread,
-            y > top * spread,
-        ]
+    return (
+        depth < camera.near,
+        depth > camera.far,
+        x < left * spread,
+        x > right * spread,
+        y < bottom * spread,
+        y > top * spread,
     )
 
 

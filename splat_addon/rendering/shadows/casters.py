@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..scene.light import Light
+from ..scene.table import corners_times
 from .hexahedra import EDGES, face_planes, planes
 from .receivers import FILTER_REACH, Receivers
 
@@ -30,7 +31,7 @@ def in_the_way(light: Light, texel: float, seen: list[Receivers], spread: float,
             distance = np.linalg.norm(one.space - light.position, axis=1).max()
         reach = one.outside + spread + FILTER_REACH * texel * distance
         hull = hull_planes(one.space - middle, lamp)
-        inward = (corners - middle) @ hull[:, :3].T + hull[:, 3]
+        inward = corners_times(corners - middle, hull[:, :3].T) + hull[:, 3]
         found |= (inward > -reach).any(axis=1).all(axis=1)
     return found
 

@@ -12,13 +12,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..depth_range import beyond
+from ..depth_range import are_outside
 from ..scene import Placed, PolygonInstance, Scene
 from ..scene.camera import Camera, look_at
 from ..scene.far_reaching import highest_over, pressed_above
 from ..scene.light import MAX_SUN_HALF_ANGLE, Light
 from ..scene.numbers import MAX_LENGTH
-from ..scene.table import InstanceTable, with_others
+from ..scene.table import InstanceTable, corners_times, with_others
 from ..view import View
 from .casters import in_the_way
 from .receivers import (
@@ -200,8 +200,7 @@ def _placed(maps: list[ShadowMap]) -> tuple[ShadowMap, ...]:
 
 def sees(camera: Camera, corners: np.ndarray) -> np.ndarray:
     """(n,) whether the boxes with these (n, 8, 3) world corners may be in the camera's picture."""
-    view = (corners - camera.matrix_world[:3, 3]) @ camera.matrix_world[:3, :3]
-    return ~beyond(view.reshape(-1, 3), camera).reshape(6, *corners.shape[:2]).all(axis=2).any(axis=0)
+    return ~are_outside(corners_times(corners - camera.matrix_world[:3, 3], camera.matrix_world[:3, :3]), camera)
 
 
 def atlas_columns(maps: float) -> int:
@@ -343,7 +342,7 @@ def _comes_down(caster: Placed) -> bool:
 def _nearest_over(casters: InstanceTable, frame: np.ndarray, middle: np.ndarray, half: float) -> float | None:
     """The highest place of casters over a square, in a frame of the light, whose axes are the rows; None if there is
     none."""
-    boxes = (casters.world_corners.reshape(-1, 3) @ frame.T).reshape(-1, 8, 3)
+    boxes = corners_times(casters.world_corners, frame.T)
     least, most = boxes.min(axis=1)[:, :2], boxes.max(axis=1)[:, :2]
     is_over = ((least <= middle + half) & (most >= middle - half)).all(axis=1)
     reaching = casters.reaching[is_over[casters.reaching]]

@@ -18,7 +18,7 @@ from ..scene import PolygonInstance
 from ..scene.camera import Camera
 from ..scene.far_reaching import box_corners, seen_places, seen_places_in
 from ..scene.light import MAX_SUN_HALF_ANGLE, Light
-from ..scene.table import InstanceTable
+from ..scene.table import InstanceTable, corners_times
 from .hexahedra import places_in_pyramid
 from .strays import among_others, near_things
 
@@ -209,7 +209,7 @@ def used_texels(camera: Camera, looks: LookedUp) -> tuple[int, int, int, int]:
 def _bounds(camera: Camera, corners: np.ndarray, reach: np.ndarray):
     """Where (n, 8, 3) world corners of boxes, and what is at most (n,) reach away from them, appear in a light's
     window: (n, 2) low, (n, 2) high, (n,) greatest depths (1 for a parallel camera), and (n,) whether they do."""
-    view = (corners - camera.matrix_world[:3, 3]) @ camera.matrix_world[:3, :3]
+    view = corners_times(corners - camera.matrix_world[:3, 3], camera.matrix_world[:3, :3])
     left, right, bottom, top = camera.window
     low, high, reach = np.array((left, bottom)), np.array((right, top)), reach[:, None]
     if camera.is_orthographic:
