@@ -69,6 +69,18 @@ def test_it_is_never_coarser_than_the_limits():
     assert (choices(lambda *_: 5.0, rate=None) == [[1.25], [1]]).all()
 
 
+def test_where_the_fewest_pixels_are_too_many_there_are_fewer_splats_even_if_that_saves_little():
+    tolerances, widths = choices(lambda tolerance, _: 2 * (1.25 / tolerance) ** 0.25)
+    assert widths[-1] == WIDEST and tolerances[-1] == COARSEST
+
+
+def test_a_picture_that_takes_many_times_its_time_is_followed_by_a_far_coarser_one():
+    found, _ = choices(lambda tolerance, _: 2 * (1.25 / tolerance) ** 2, pictures=2)
+    assert found[1] == pytest.approx(1.25 * 4)
+    found, _ = choices(lambda tolerance, _: 0.3 * (1.25 / tolerance) ** 2, pictures=2)
+    assert found[1] < 1.25 * 2
+
+
 @pytest.mark.parametrize("tolerance", [0.0, 1.25])
 def test_where_merging_does_not_help_there_are_fewer_pixels(tolerance):
     """The time is that of pixels: of many lights, or of large surfels in front of one another."""

@@ -17,8 +17,11 @@ COARSEST = 16.0
 WIDEST = 4.0
 #: A picture that takes less than this share of its time allows finer ones.
 _SPARE = 0.6
-#: The most that one picture changes the tolerance or the resolution by.
-_STEP = 2.0
+#: The most that one picture changes the tolerance or the resolution by, and the most of one that took many times its
+#: time: a second of such a picture is worse than one that is too coarse.
+_STEP, _LEAP = 2.0, 4.0
+#: How many times its time that is.
+_FAR_TOO_LONG = 4.0
 
 
 #: The share of a picture's time after which a call of the view ends: the last step may take as long again. A call may
@@ -116,7 +119,8 @@ class Pace:
             # others come later, and the tolerance is not what decides how many there are
             self._most = max(min(streamed, self._most) / min(load, _STEP**2), LEAST_STREAMED)
         elif not _SPARE <= load <= 1:
-            self._change(load, min(max((load / (_SPARE + 1) * 2) ** 0.5, 1 / _STEP), _STEP), settings, streamed)
+            most = _LEAP if load > _FAR_TOO_LONG else _STEP
+            self._change(load, min(max((load / (_SPARE + 1) * 2) ** 0.5, 1 / _STEP), most), settings, streamed)
 
     def _change(self, load: float, step: float, settings: Settings, streamed: int) -> None:
         """Make the next picture coarser (a step above 1) or finer."""
@@ -124,6 +128,9 @@ class Pace:
         if step > 1 and self._does_merging_help and self._tolerance < most:
             before, self._tolerance = self._tolerance, min(self._tolerance * step, most)
             self._raised = load, self._tolerance / before
+        elif step > 1 and self._width == WIDEST:
+            # nothing else is left, and few fewer splats are better than none
+            self._tolerance = min(self._tolerance * step, most)
         elif step > 1 or self._width > 1:
             self._width = min(max(self._width * step, 1.0), WIDEST)
         elif self._tolerance > 1:
