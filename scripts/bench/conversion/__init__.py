@@ -7,7 +7,7 @@ is installed, and our operator as a whole. Meshes are smooth-shaded, without col
 of Surfels, and gives plain ones; with the defaults: how many times the processor time of this the options of Blender's
 conversion take. Extra bytes: the peak while sampling, above the cleaned mesh and the result. Alternatives: how many
 times longer they take than our sampling, without cleaning; with its tree: in processor time, including the building of
-a tree.
+a tree; of our defaults: the same, relative to ours with the options of the conversion.
 """
 
 from __future__ import annotations
@@ -36,7 +36,8 @@ OURS = (
     "seconds / cost model", "with the defaults", "extra bytes a surfel",
 )  # fmt: skip
 THEIRS = (
-    "model", "other", "its samples", "its seconds", "on the clock", "in work", "in work, a sample", "with its tree"
+    "model", "other", "its samples", "its seconds", "on the clock", "in work", "in work, a sample", "with its tree",
+    "of our defaults",
 )  # fmt: skip
 BARE = "points of a", "points", "surfels", "s", "points/s", "peak bytes a point"
 
@@ -114,13 +115,15 @@ def cells(taken: Turns, triangles: int) -> list[str]:
 
 def ratios(taken: Turns, other: str, preparation: float) -> list[str]:
     """Samples and seconds of an alternative, and its times relative to ours: clock, processor, processor per sample,
-    processor including its tree."""
+    processor including its tree; and the same relative to ours with the defaults."""
     clock, work = (taken.part(lambda pair, k=k: pair[k]) for k in (0, 1))
     count, mine = taken.results[other], taken.results["sampling"]
     each = Spread.of(ratio * mine / count for ratio in work.ratios(other, "sampling"))
-    pairs = zip(work.values[other], work.values["sampling"])
-    whole = Spread.of((theirs + preparation) / ours for theirs, ours in pairs)
-    spreads = clock.spread(other), clock.ratio(other, "sampling"), work.ratio(other, "sampling"), each, whole
+    whole, full = (
+        Spread.of((theirs + preparation) / ours for theirs, ours in zip(work.values[other], work.values[ours_is]))
+        for ours_is in ("sampling", "with the defaults")
+    )
+    spreads = clock.spread(other), clock.ratio(other, "sampling"), work.ratio(other, "sampling"), each, whole, full
     return [f"{count:,}", *(f"{spread:.3g}" for spread in spreads)]
 
 
