@@ -9,7 +9,7 @@ never contradict those of its children.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -32,12 +32,14 @@ class Level:
 
     numbers: (m,) index of the surfel or node; nodes come after the surfels. children: (n,) entries of the level below,
     ordered by parent. counts: (m,) number of children of each entry, 1 for those that wait. cell: size of the cells.
+    sizes: of the parents alone, as `Hierarchy.sizes`.
     """
 
     numbers: np.ndarray
     children: np.ndarray
     counts: np.ndarray
     cell: float
+    sizes: np.ndarray = field(default_factory=lambda: np.zeros(0, np.float32))
 
 
 @dataclass(frozen=True, eq=False)

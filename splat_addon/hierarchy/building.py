@@ -16,8 +16,10 @@ from .blocks import Blocks, Level, depth_first, make_blocks
 from .clusters import clustered
 from .extremes import extreme
 from .families import families
+from .loose import Loose, bare, resized
 from .merging import as_surfels, merged
 from .nodes import PORTION, Leaves, Table
+from .pieces import apart
 from .runs import Runs
 from .surroundings import as_drawn
 
@@ -52,7 +54,8 @@ class Hierarchy:
     it shows (its size times the change of colour or normal). entries: (E,) int32 indices of surfels and, from N on, of
     nodes, level by level, starting with the surfels; blocks are runs of it. counts: (E - N,) int32, how many entries of
     the level below each entry above the surfels' level stands for; those of successive entries follow one another.
-    cells: cell size of each level above the surfels. built_looseness: its `looseness` when it was built.
+    cells: cell size of each level above the surfels. sizes: (M,) float32 factors of the nodes' axes, as
+    `Loose.sizes`. built_looseness: its `looseness` when it was built.
     """
 
     surfels: int
@@ -62,6 +65,7 @@ class Hierarchy:
     counts: np.ndarray
     cells: tuple[float, ...]
     blocks: Blocks
+    sizes: np.ndarray
     built_looseness: float = 0.0
 
     def looseness(self, surfels: Surfels) -> float:
@@ -74,23 +78,25 @@ class Hierarchy:
     @cached_property
     def nbytes(self) -> int:
         """Memory in bytes beside the surfels."""
-        arrays = (*self.nodes.arrays().values(), self.errors, self.entries, self.counts, *vars(self.blocks).values())
-        return sum(array.nbytes for array in arrays)
+        own = self.errors, self.entries, self.counts, self.sizes
+        return sum(array.nbytes for array in (*self.nodes.arrays().values(), *own, *vars(self.blocks).values()))
 
 
-def build_hierarchy(surfels: Surfels, told: Told | None = None) -> Hierarchy:
+def build_hierarchy(surfels: Surfels, told: Told | None = None, is_portion: bool = False) -> Hierarchy:
     """The hierarchy of any set of surfels; it has a single level if there are none, or too few to merge.
 
-    told: called between steps with the finished share, 0 to 1; it may raise, which ends the building.
+    told: called between steps with the finished share, 0 to 1; it may raise, which ends the building. is_portion: other
+    sets may go on where this one ends, so that nothing in it is known to stand apart.
     """
     told = told or _untold
-    nodes, errors, levels, geometry = build_levels(surfels, lambda share: told(_MERGING * share))
+    nodes, errors, levels, geometry = build_levels(surfels, lambda share: told(_MERGING * share), is_portion)
     entries, counts = depth_first(levels, len(surfels))
     blocks = make_blocks(entries, counts, geometry, errors)
     every = np.concatenate([np.zeros(0, np.int32), *counts])
     cells = tuple(level.cell for level in levels)
+    sizes = np.concatenate([np.zeros(0, np.float32), *(level.sizes for level in levels)])
     told(1.0)
-    made = Hierarchy(len(surfels), nodes, errors, np.concatenate(entries), every, cells, blocks)
+    made = Hierarchy(len(surfels), nodes, errors, np.concatenate(entries), every, cells, blocks, sizes)
     return replace(made, built_looseness=made.looseness(surfels))
 
 
@@ -98,41 +104,59 @@ def _untold(share: float) -> None:
     """Nobody asked for progress."""
 
 
-def build_levels(surfels: Surfels, told: Told = _untold) -> tuple[Surfels, np.ndarray, list[Level], np.ndarray]:
+def build_levels(
+    surfels: Surfels, told: Told = _untold, is_portion: bool = False
+) -> tuple[Surfels, np.ndarray, list[Level], np.ndarray]:
     """Merged nodes, their (M, 3) errors, the levels from the bottom up, and the (N + M, 7) geometry of all.
 
-    told: as in `build_hierarchy`.
+    told, is_portion: as in `build_hierarchy`.
     """
-    current = Leaves(surfels)
+    current, loose = Leaves(surfels), Loose(surfels, may_be_apart=not is_portion)
     numbers, worst = np.arange(len(surfels), dtype=np.int32), None
     made, errors = [empty_surfels(surfels.origin)], [np.zeros((0, 3), np.float32)]
     levels, places = [], [current.geometry]
-    total, left = len(surfels), 1 - _LEAVES
+    total, left, last = len(surfels), 1 - _LEAVES, None
     told(_LEAVES)
+
+    def make_last() -> None:
+        """Make the merged surfels of the last level, once it is known whether anything continues them."""
+        parents, drawn = last
+        levels[-1] = replace(levels[-1], sizes=loose.sizes(parents))
+        made.append(as_surfels(resized(drawn, levels[-1].sizes), surfels))
+        np.maximum(errors[-1][:, 1], bare(parents, levels[-1].sizes), out=errors[-1][:, 1])
+        worst[: len(parents)] = errors[-1]
+
     for cell in _cells(surfels):
 
         def told_of_level(share: float, left=left) -> None:
             told(1 - left * (1 - _OF_THE_REST * share))
 
-        families = _families(current, cell)
+        families = _families(current, cell, loose)
         told_of_level(_ORDERED)
         if families is None:
             continue
         left *= 1 - _OF_THE_REST
-        rows, runs, waiting = families
+        if last:
+            make_last()
+        rows, runs, waiting, whole = families
         parents, drawn, own = merged_level(current, worst, rows, runs, cell, told_of_level)
+        loose.go_on(rows, runs, waiting, whole, parents)
+        if whole:
+            below = 0 if worst is None else runs.largest(worst[rows, 1])[:whole]
+            own[:whole, 1] = np.minimum(own[:whole, 1], np.maximum(loose.extents(parents, whole), below))
         fresh = np.arange(total, total + len(parents), dtype=np.int32)
         total += len(parents)
         numbers = np.concatenate([fresh, numbers[waiting]])
         worst = np.concatenate([own, np.zeros((len(waiting), 3), np.float32) if worst is None else worst[waiting]])
         counts = np.concatenate([runs.counts, np.ones(len(waiting), runs.counts.dtype)]).astype(np.int32)
         levels.append(Level(numbers, np.concatenate([rows, waiting]).astype(np.int32), counts, cell))
-        made.append(as_surfels(drawn, surfels))
+        last = parents, drawn
         errors.append(own)
         places.append(parents.geometry)
         current = current.joined([parents], waiting)
-    nodes = concatenate(made[1:]) if levels else made[0]
-    return nodes, np.concatenate(errors), levels, np.concatenate(places)
+    if last:
+        make_last()
+    return concatenate(made[1:]) if levels else made[0], np.concatenate(errors), levels, np.concatenate(places)
 
 
 def merged_level(
@@ -174,24 +198,31 @@ def _cells(surfels: Surfels) -> Iterator[float]:
         cell *= 2
 
 
-def _families(current: Table | Leaves, cell: float) -> tuple[np.ndarray, Runs, np.ndarray] | None:
-    """The rows that merge, in runs with one parent each, and the rows that wait for larger cells; None if too few
-    merge."""
+def _families(current: Table | Leaves, cell: float, loose: Loose) -> tuple[np.ndarray, Runs, np.ndarray, int] | None:
+    """The rows that merge, in runs with one parent each, the rows that wait for larger cells, and how many of the runs,
+    the first, are whole pieces; None if too few merge."""
     is_large, never = current.column("radii") > _LARGEST * cell, extreme(current)
     if never is not None:
         is_large |= never
     rows = np.flatnonzero(~is_large)
     if len(rows) < 2:
         return None
-    order, counts = clustered(current, rows, cell, has_extremes=never is not None)
+    found = loose.found(current, rows, cell)
+    if found:
+        rows = np.setdiff1d(rows, found.families, assume_unique=True)
+    order, counts = clustered(current, rows, cell, has_extremes=never is not None) if len(rows) else (rows, rows)
+    if found:
+        parts, counts = apart(found.larger[rows[order]], counts)
+        order = order[parts]
     several = counts > 1
     is_merged = np.repeat(several, counts)
-    if np.count_nonzero(is_merged) < _LEAST_MERGED * len(current):
-        return None
-    rows = rows[order]
-    waiting = np.concatenate([rows[~is_merged], np.flatnonzero(is_large)])
+    merging, waiting = rows[order[is_merged]], np.concatenate([rows[order[~is_merged]], np.flatnonzero(is_large)])
     counts = counts[several]
-    return rows[is_merged], Runs(np.cumsum(counts) - counts, counts), waiting
+    if found:
+        merging, counts = np.concatenate([found.families, merging]), np.concatenate([found.counts, counts])
+    if len(merging) < _LEAST_MERGED * len(current):
+        return None
+    return merging, Runs(np.cumsum(counts) - counts, counts), waiting, len(found.counts) if found else 0
 
 
 def _errors(nodes: Table) -> np.ndarray:

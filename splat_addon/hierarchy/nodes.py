@@ -25,6 +25,9 @@ MERGED_OVERLAP = 0.9
 #: Factor of its weights. It overlaps less than samples do, so that with 1.75 it would count as much where both meet in
 #: a pixel, at a crease. On smooth surfaces less is better: the finer of two levels shows where they meet.
 MERGED_WEIGHT = 1.5
+#: Where a pixel's filter blends merged surfels, they are drawn smaller by what it adds, but have at least this share of
+#: their area: smaller ones would leave gaps at the corners of their cells.
+LEAST_SHOWN = 0.66
 
 #: Nodes per batch, few enough for temporaries to stay in the processor's cache.
 PORTION = 1 << 14

@@ -16,6 +16,7 @@ import numpy as np
 from ..surfels import Surfels, concatenate
 from .blocks import make_blocks
 from .building import Hierarchy, merged_level
+from .loose import bare, resized
 from .merging import as_surfels
 from .nodes import Leaves
 from .runs import Runs
@@ -42,7 +43,9 @@ def refit_hierarchy(hierarchy: Hierarchy, surfels: Surfels) -> Hierarchy:
         parents, drawn, own = merged_level(current, worst, family, runs, cell)
         # nodes are numbered in the order in which the build made them
         created = np.argsort(numbers[several])
-        made.append(as_surfels(drawn.of_rows(created), surfels))
+        sizes = hierarchy.sizes[numbers[several] - len(surfels)]
+        np.maximum(own[:, 1], bare(parents, sizes), out=own[:, 1])
+        made.append(as_surfels(resized(drawn, sizes).of_rows(created), surfels))
         errors.append(own[created])
         places.append(parents.of_rows(created).geometry)
         waiting = rows[starts[~several]]

@@ -59,8 +59,8 @@ def as_drawn(nodes: Table, cell: float) -> Table:
 
     cell: of the level. Where surfels have moved apart since they were built, neighbours are searched farther away.
     """
-    keys, order = _voxels(nodes.column("positions"), max(cell, float(np.median(nodes.column("radii")))))
-    some, near = nodes.take(order), _Near(keys)
+    keys, order = voxels(nodes.column("positions"), max(cell, float(np.median(nodes.column("radii")))))
+    some, near = nodes.take(order), Near(keys)
     values = np.concatenate([some["shading"], some["colors"][:3]])
     columns = some["positions"], some["normals"], some["materials"], some["radii"], values
     candidates = np.ascontiguousarray(np.vstack(columns).T)
@@ -96,7 +96,7 @@ def _lengths(vectors: np.ndarray) -> np.ndarray:
     return np.sqrt(dot(vectors, vectors))
 
 
-def _voxels(positions: np.ndarray, cell: float) -> tuple[np.ndarray, np.ndarray]:
+def voxels(positions: np.ndarray, cell: float) -> tuple[np.ndarray, np.ndarray]:
     """(n,) voxels of the positions in ascending order, and the order that sorts them."""
     places = (positions - positions.min(axis=1)[:, None]) / np.float32(cell)
     x, y, z = np.minimum(places, (1 << _BITS) - 3).astype(np.int64) + 1
@@ -150,7 +150,7 @@ class _Pairs:
         return self.runs.spread(self.nodes[name][..., self.part])
 
 
-class _Near:
+class Near:
     """Finds what lies in the 27 voxels around a surfel's, in N surfels in the order of their (N,) voxels."""
 
     def __init__(self, keys: np.ndarray):

@@ -106,4 +106,4 @@ class _Conversion:
 
         arrays, own = self._files.with_surroundings(number, self._neighbours)
         surfels = self._convert(arrays, own, lambda share: told(_MADE * share))
-        return surfels, build_hierarchy(surfels, lambda share: told(_MADE + (1 - _MADE) * share))
+        return surfels, build_hierarchy(surfels, lambda share: told(_MADE + (1 - _MADE) * share), is_portion=True)

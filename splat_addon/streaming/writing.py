@@ -68,7 +68,7 @@ def _merged(portions: Iterable[np.ndarray], survey: Survey, told) -> Iterator[tu
     done = 0
     for rows in portions:
         surfels = as_surfels(rows, survey.origin, survey.is_solid)
-        yield surfels, build_hierarchy(surfels, partial(_tell, told, done, len(surfels)))
+        yield surfels, build_hierarchy(surfels, partial(_tell, told, done, len(surfels)), is_portion=True)
         done += len(surfels)
         told(done)
 

@@ -24,7 +24,7 @@ LEAST_TOGETHER = 8
 MOST_TRIANGLES = 1 << 13
 
 #: Doublings of the error from one cut to the next, and the most cuts between the finest and the coarsest.
-_OCTAVE, _MOST_LIMITS = 0.5, 48
+_OCTAVE, _MOST_LIMITS = 0.25, 48
 
 
 class Steps(NamedTuple):

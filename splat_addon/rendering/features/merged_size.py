@@ -4,13 +4,13 @@ as much as the samples that they stand for."""
 
 from __future__ import annotations
 
-from ...hierarchy.nodes import MERGED_WEIGHT
+from ...hierarchy.nodes import LEAST_SHOWN, MERGED_WEIGHT
 from ..passes.decisions import merging
 from ..plan.graph import Part
 from ..plan.hosts import SPLAT_HOSTS, Host
 from ..plan.planning import any_of
 
-CONSTANTS = {"MERGED_WEIGHT": MERGED_WEIGHT}
+CONSTANTS = {"MERGED_WEIGHT": MERGED_WEIGHT, "LEAST_SHOWN": LEAST_SHOWN}
 
 
 def is_present(planning) -> bool:
