@@ -85,7 +85,7 @@ class ModalWork(ModalThread):
         return file_sentence(error)
 
     def run_now(self, context: bpy.types.Context) -> set[str]:
-        """Work to the end. Whatever ends it early, Ctrl-C too, leaves neither a file nor any other change."""
+        """Work to the end. Whatever ends it early, Ctrl-C too, leaves nothing of what was being done."""
         manager = context.window_manager
         manager.progress_begin(0.0, 1.0)
         self._prepare(context)
