@@ -5,8 +5,9 @@
 //          what is behind glass, and else to the probes and the world. Textures: rendering/probes/glass.py and
 //          scene/glass_surfaces.py. The twin of reference/glass.py.
 
-#part principled
+#part principled, see_through
 #include "lib/finish.glsl"
+#include "lib/glass_surfaces.glsl"
 #include "lib/picture_maps.glsl"
 
 vec3 glass_place;     // of the surface, view space
@@ -20,123 +21,6 @@ vec3 facing_axis_of(vec3 along) {
 }
 
 const int GLASS_CROSSINGS = 10;
-// Boxes and leaves that are looked at for one ray, at most: llvmpipe ends all loops of a shader after 65,535 turns.
-const int GLASS_VISITS = 1500;
-const float FAR = 1e30;
-
-// What a ray meets.
-struct GlassMet {
-  float away;  // FAR for nothing
-  vec3 normal;
-  vec3 tint;
-  float ior;
-  float roughness;
-};
-
-float fresnel_of(float cosine, float ratio) {  // ratio: of the indices, behind the surface over before it
-  float sine2 = (1.0 - cosine * cosine) / (ratio * ratio);
-  if (sine2 >= 1.0) return 1.0;
-  float behind = sqrt(1.0 - sine2);
-  float across = (cosine - ratio * behind) / (cosine + ratio * behind);
-  float along = (ratio * cosine - behind) / (ratio * cosine + behind);
-  return 0.5 * (across * across + along * along);
-}
-
-// Behind a surface that faces the ray; along it where nothing is refracted.
-vec3 bent(vec3 along, vec3 against, float cosine, float ratio) {
-  float square = 1.0 - (1.0 - cosine * cosine) / (ratio * ratio);
-  return normalize(along / ratio + against * (cosine / ratio - sqrt(max(square, 0.0))));
-}
-
-// Where a block of four texels begins. Shifts, because drivers may divide integers one by one.
-ivec2 pane_place(int block) {
-  return ivec2((block & ((1 << GLASS_ROW_BITS) - 1)) << 2, block >> GLASS_ROW_BITS);
-}
-
-vec4 pane_texel(ivec2 place, int number) {
-  return texelFetch(glass_surfaces, place + ivec2(number, 0), 0);
-}
-
-// Three numbers from -1 to 1, as bytes of one.
-vec3 unpacked(float bytes) {
-  vec2 rest = floor(bytes / vec2(256.0, 65536.0));
-  return vec3(bytes - 256.0 * rest.x, rest.x - 256.0 * rest.y, rest.y) / 127.5 - 1.0;
-}
-
-// Where a ray enters a box, FAR if it does not before an end, or if nothing in it faces that way.
-float enters_box(vec4 low, vec4 high, vec3 from, vec3 inverse, vec3 facing, float end) {
-  vec3 one = (low.xyz - from) * inverse, other = (high.xyz - from) * inverse;
-  vec3 first = min(one, other), last = max(one, other);
-  float enters = max(max(first.x, first.y), max(first.z, 0.0)), leaves = min(min(last.x, last.y), last.z);
-  bool faces = dot(max(unpacked(low.w) * facing, unpacked(high.w) * facing), vec3(1.0)) > 0.0;
-  return faces && low.x <= high.x && enters <= leaves * 1.00001 + 1e-6 && enters <= end ? enters : FAR;
-}
-
-// Up to the nearest node whose sibling is still to be looked at, and on to that; 0 behind the last.
-void next_pane(inout int node, inout int waiting) {
-  int up = (floatBitsToInt(float(waiting & -waiting)) >> 23) - 127;  // the lowest bit is a power of two, and so exact
-  node = waiting == 0 ? 0 : (node >> up) ^ 1;
-  waiting = waiting == 0 ? 0 : (waiting >> up) ^ 1;
-}
-
-// What a ray meets first of what is on its side: 1 where it leaves glass, -1 where it enters. Of discs that overlap the
-// nearest counts, and the others by how near they are to their middles.
-GlassMet met_glass(vec3 from, vec3 along, float side) {
-  vec3 inverse = 1.0 / mix(along, vec3(1e-20), lessThan(abs(along), vec3(1e-20))), normals = vec3(0.0);
-  vec3 facing = along * side;
-  // bits of `waiting` tell for the node and those above it whether their siblings are still to be looked at
-  int leaves = int(frame.glass_leaves), node = 1, waiting = 0, nearest = -1;
-  int visits = 0;
-  float away = FAR;
-  vec2 place = vec2(0.0);
-  while (node > 0 && visits < GLASS_VISITS) {
-    for (; node > 0 && node < leaves && visits < GLASS_VISITS; visits++) {
-      ivec2 boxes = pane_place(node);
-      float left = enters_box(pane_texel(boxes, 0), pane_texel(boxes, 1), from, inverse, facing, away);
-      float right = enters_box(pane_texel(boxes, 2), pane_texel(boxes, 3), from, inverse, facing, away);
-      if (min(left, right) < FAR) {
-        node = 2 * node + int(right < left);
-        waiting = 2 * waiting + int(max(left, right) < FAR);
-      } else {
-        next_pane(node, waiting);
-      }
-    }
-    if (node < leaves) break;
-    int first = leaves + (node - leaves) * GLASS_LEAF, last = first + GLASS_LEAF;
-    for (int block = first; block < last; block++) {
-      ivec2 at = pane_place(block);
-      vec4 plane = pane_texel(at, 0);
-      float turned = dot(plane.xyz, along), distance = -(dot(plane.xyz, from) + plane.w) / turned;
-      if (!(turned * side > 0.0 && distance > 0.0 && distance < FAR)) continue;
-      vec4 across = pane_texel(at, 1), up = pane_texel(at, 2);
-      vec3 meets = from + along * distance;
-      vec2 here = vec2(dot(across.xyz, meets) + across.w, dot(up.xyz, meets) + up.w);
-      if (!(max(abs(here.x), abs(here.y)) <= 1.0)) continue;
-      vec4 normal = pane_texel(at, 3);  // with half the length of a disc's half-axis; 0 for a triangle
-      float weight = min(min(here.x, here.y), 1.0 - here.x - here.y) + 1e-5;
-      if (normal.w > 0.0) weight = 1.0 - dot(here, here);
-      if (!(weight >= 0.0) || distance > away + normal.w) continue;
-      if (distance < away - normal.w) normals = vec3(0.0);
-      normals += normal.xyz * weight;
-      if (distance < away) {
-        away = distance;
-        nearest = block;
-        place = here;
-      }
-    }
-    next_pane(node, waiting);
-    visits++;
-  }
-  GlassMet met = GlassMet(away, normals, vec3(1.0), 1.0, 0.0);
-  if (nearest < 0) return met;
-  ivec2 more = pane_place(nearest + leaves * GLASS_LEAF);
-  vec4 first = pane_texel(pane_place(nearest), 3), second = pane_texel(more, 0), third = pane_texel(more, 1);
-  if (!(first.w > 0.0)) met.normal = mix(first.xyz, second.xyz, place.x) + (third.xyz - first.xyz) * place.y;
-  met.ior = second.w;
-  met.roughness = third.w;
-  met.tint = pane_texel(more, 2).xyz;
-  return met;
-}
 
 vec4 behind_at(int number, vec2 place) {
   PictureTexels at = picture_texels(picture_map(ivec2(frame.glass_size), number), number, place);
@@ -156,6 +40,8 @@ const int GLASS_STEPS = 32, GLASS_HALVINGS = 5;
 const float GLASS_STRIDE = 3.0;  // pixels of a step, at least
 // How far behind what begins to hide it a ray may be and still meet it, as a share of the depth.
 const float GLASS_BEHIND = 0.05;
+// How far behind it a ray may begin: glass stands on a floor, whose depth is that of the middle of a pixel.
+const float GLASS_TOUCHES = 0.005;
 
 // A stretch of a ray in the picture: places in pixels and depths' inverses at its ends, or depths of a parallel view.
 struct GlassWay {
@@ -201,6 +87,7 @@ bool met_in_picture(GlassWay way, out vec3 found, out bool is_open) {
   int steps = int(clamp(ceil(pixels / GLASS_STRIDE), 1.0, float(GLASS_STEPS)));
   vec3 low = way.start;
   float seen = behind_depth_at(low.xy), before = way_depth(low) - seen;
+  if (before < GLASS_TOUCHES * seen) before = min(before, 0.0);
   for (int i = 1; i <= steps; i++) {
     vec3 high = mix(way.start, way.end, float(i) / float(steps));
     seen = behind_depth_at(high.xy);
@@ -318,7 +205,7 @@ vec3 through_glass(vec3 position, vec3 normal) {
   float side = 1.0, frosted2 = 0.0;
   int part = -1;  // the next of the rays into which it has been parted; -1 as long as one is followed
   for (int i = 0; i < GLASS_CROSSINGS + GLASS_TAPS + 2; i++) {
-    GlassMet met = GlassMet(FAR, vec3(0.0), vec3(1.0), 1.0, 0.0);
+    GlassMet met = GlassMet(FAR, vec3(0.0), vec3(1.0), 1.0, 0.0, false);
     bool looks = true, ends = true;
     vec3 counts = share;
     if (part < 0) {
@@ -383,13 +270,44 @@ void glass_mirror(inout vec3 radiance) {
   }
 }
 
-#part principled, covered
+#part principled, see_through, covered
 void glass_below_cover(inout Lobe lobe) {
   glass_passed *= passed_on;
 }
 
-#part shaded_sample
+#part shaded_sample, see_through
 void glass_prepare(inout Shaded s) {
   glass_place = eye_position(s.texel, s.mean.depth);
   glass_material = s.material;
+}
+
+#part lights, glass_shadows
+#include "lib/glass_surfaces.glsl"
+
+const int GLASS_IN_THE_WAY = 8;
+// Smooth glass that bends light hides a lamp without a size, as in Cycles: no ray finds it.
+const float CLEAR_IOR = 1.001, CLEAR_ROUGHNESS = 0.05;
+
+// What glass leaves of a light, straight through it. Successive samples look towards other places of the lamp.
+void glass_hide(inout Incident here, LightTexels of, vec3 position, vec3 normal) {
+  if (!(texelFetch(lights, ivec2(6, of.number), 0).w > 0.0) || !(dot(here.irradiance, vec3(1.0)) > 0.0)) return;
+  vec2 aside = frame.glass_aside * vec2(cos(frame.glass_turn), sin(frame.glass_turn));
+  vec3 toward = here.middle + here.half_u * aside.x + here.half_v * aside.y;
+  vec3 from = (frame.to_glass * vec4(position, 1.0)).xyz, way = mat3(frame.to_glass) * toward, left = vec3(1.0);
+  vec3 along = normalize(way);
+  float reach = of.place.w > 0.5 ? length(way) : FAR, side = -1.0;
+  bool is_point = !(of.strength.w > 0.0);
+  for (int i = 0; i < GLASS_IN_THE_WAY; i++) {
+    GlassMet met = met_glass(from, along, side);
+    if (met.away >= reach) break;
+    from += along * met.away;
+    reach -= met.away;
+    side = -side;
+    if (!met.casts) continue;
+    float cosine = abs(dot(met.normal, along)) * inversesqrt(max(dot(met.normal, met.normal), 1e-20));
+    if (is_point && met.ior > CLEAR_IOR && met.roughness < CLEAR_ROUGHNESS) left = vec3(0.0);
+    left *= (1.0 - fresnel_of(cosine, met.ior)) * met.tint;
+  }
+  here.irradiance *= left;
+  here.radiance *= left;
 }

@@ -42,6 +42,7 @@ from .probes.pictures import ProbePictures
 from .read_back import assembled, background, background_pixel, mended, positions_of, read_tile
 from .scene import Scene
 from .scene.camera import Camera
+from .scene.glass_surfaces import GlassSurfaces
 from .scene.panorama import Panorama
 from .scene.table import Kinds
 from .settings import Settings
@@ -196,25 +197,29 @@ class Renderer:
         eye: np.ndarray | None = None,
         is_draft: bool = False,
         known: ProbePictures | None = None,
+        panes: GlassSurfaces | None = None,
         **options,
     ) -> Shared:
         """The plan of a picture and all that its samples share. repeated: how many samples follow one another. whole:
         the scene that lights what is drawn, if that is only a part. eye: where the viewer is, if the camera is a
         probe's or behind a mirror. is_draft: whether a better picture follows. known: what probes saw, if the picture
-        is of what is reflected. options: of `plan`."""
+        is of what is reflected. panes: the glass of the scene, if it is known. options: of `plan`."""
         eye = camera.matrix_world[:3, 3] if eye is None else eye
         whole, scene = whole or scene, self.near_and_far.resolved(scene, camera)
+        if glass.is_drawn(scene, settings):
+            panes = panes or self.probes.surfaces(scene)
+            scene = self.probes.apart.without_shadows(scene) if glass.tints_shadows(scene, settings) else scene
         before = no_history(scene) if is_repeatable else history(scene, self._drawn)
         probes = known.probes if known else ()
         frame_plan = plan(scene, camera, settings, history=before, probes=probes, **options)
         check_samplers(frame_plan, self.device.max_samplers)
-        told = {"is_repeatable": is_repeatable, "whole": whole, "eye": eye, "is_draft": is_draft}
+        told = {"is_repeatable": is_repeatable, "whole": whole, "eye": eye, "is_draft": is_draft, "panes": panes}
         seen = (known, None, None) if known else self._reflected(scene, camera, settings, frame_plan, told)
         is_bounced = frame_plan.found.get(bounced_light.missing) == ""
         light = None
         if is_bounced and frame_plan.passes:
             light = self.bounced.of(whole, eye, settings.bounces, is_draft)
-        return Shared(scene, frame_plan, settings, repeated, before, *seen, light)
+        return Shared(scene, frame_plan, settings, repeated, before, *seen, light, panes)
 
     def _reflected(self, scene: Scene, camera: Camera, settings: Settings, frame_plan: FramePlan, told: dict):
         """What the plan's probes and mirror see, and what is behind its glass, drawn if anything in it has changed;

@@ -390,6 +390,7 @@ SPECIAL = {
     "nothing": lambda: of_nothing(*scenes.torus(count=100, size=SIZE)),
     "cards": lambda: with_cards(*scenes.torus(count=COUNT, size=SIZE)),
     "glass": lambda: glassy(*scenes.polygons(count=COUNT, size=SIZE)),
+    "glass_shadows": lambda: glassy(*shadowed(*scenes.polygons(count=COUNT, size=SIZE))),
     "mirrored": lambda: mirrored(*scenes.polygons(count=COUNT, size=SIZE)),
 }
 
@@ -427,7 +428,7 @@ CASES = [
     ("mirrored", "quad", {"reflections": True}),
     *(("leaves", method, {"samples": 2}) for method in ("quad", "mip")),
     ("glass", "quad", {"refraction": True, "reflections": True}),
-    ("glass", "mip", {"refraction": True}),
+    ("glass_shadows", "mip", {"refraction": True}),
     ("mirrored", "quad", {"bounces": 1}),
     *(("polygon_shadows", method, {"lights_splats": True}) for method in ("quad", "mip")),
     ("large_lamp_shadows", "quad", {}),

@@ -184,3 +184,33 @@ def test_a_translucent_sheet_is_lit_by_what_is_behind_it(kind, casts, render):
         sun = Light("sun", energy=np.pi * np.sqrt(2), direction=direction, casts_shadow=casts)
         ours = render(Scene(**sheet, lights=(sun,)), CAMERA, Settings(method="quad")).color[16:32, 16:32, :3]
         assert ours.reshape(-1, 3) == pytest.approx(np.tile(np.array(color[:3]) * share, (256, 1)), rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("kind", "size", "ior", "passes"),
+    [("polygons", 0.02, IOR, True), ("surfels", 0.0, IOR, False), ("surfels", 0.0, 1.0, True)],
+)
+def test_light_through_a_pane_is_tinted_by_both_sides(kind, size, ior, passes, render):
+    """A lamp without a size is not found through glass that bends light, as in Cycles."""
+    pane = Material(roughness=0.0, ior=ior, finish=Finish(transmission=1.0, tint_power=1.0))
+    sides = [((0, 0, 1.0), 1), ((0, 0, 0.9), -1)]
+    if kind == "polygons":
+        corners = np.array([(-3, -3, 0), (3, -3, 0), (3, 3, 0), (-3, 3, 0)])
+        turned = {1: [(0, 1, 2), (0, 2, 3)], -1: [(0, 2, 1), (0, 3, 2)]}
+        made = [make_polygons(corners + at, turned[up], color=(*TINT, 1)) for at, up in sides]
+        above = {"polygons": [PolygonInstance(one, materials=(pane,)) for one in made]}
+    else:
+        x, y = (axis.ravel() * 0.2 for axis in np.mgrid[-15:16, -15:16])
+        flat = np.stack([x, y, 0 * x], axis=1)
+        made = [extremes.discs(flat + at, (0.25, 0, 0), (0, 0.25 * up, 0)) for at, up in sides]
+        made = [replace(one, colors=np.tile((*TINT, 1), (len(x), 1))) for one in made]
+        above = {"polygons": [], "surfels": [Instance(one, materials=(pane,)) for one in made]}
+    floor = make_polygons([(-9, -9, 0), (9, -9, 0), (9, 9, 0), (-9, 9, 0)], [(0, 1, 2), (0, 2, 3)], color=(1, 1, 1, 1))
+    above["polygons"].append(PolygonInstance(floor, materials=(Material(roughness=1.0, ior=1.0),)))
+    sun = Light("sun", energy=np.pi, direction=(0, 0, -1), size=size, casts_shadow=True)
+    below = Camera.perspective(look_at((0, -0.5, 0.5), (0, 0, 0)), 0.3, (16, 16), near=0.01, far=50)
+    ours = render(Scene(**above, lights=(sun,)), below, SETTINGS).color[..., :3].reshape(-1, 3)
+    kept = (1 - ((ior - 1) / (ior + 1)) ** 2) ** 2 * TINT**2
+    assert ours == pytest.approx(np.tile(kept * passes, (256, 1)), abs=0.01)
+    if kind == "polygons":
+        assert render(Scene(**above, lights=(sun,)), below, Settings(method="quad")).color[..., :3].max() < 0.01

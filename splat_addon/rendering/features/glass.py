@@ -12,32 +12,52 @@ from ..plan.hosts import LIT_HOSTS
 from ..plan.planning import any_of
 from ..probes.flat_pictures import PICTURE_MAPS
 from ..probes.glass import has_glass
+from ..scene import Scene
 from ..scene.glass_surfaces import LEAF, ROW_BITS
+from ..settings import Settings
+from ..shading_models import get_shading_model
 
 
 def glass(planning) -> bool:
     """Whether the frame shows what is behind glass."""
     if not planning.shown or not any_of(has_glass, planning.scene.table.seen.kinds):
         return False
-    if why := _missing(planning):
+    if why := why_opaque(planning.settings):
         planning.skip("glass", f"it is drawn opaque: {why}")
     return not why
 
 
-def _missing(planning) -> str:
+def shadows(planning) -> bool:
+    """Whether lights are followed through glass."""
+    return planning.shown and planning.model.is_lit and tints_shadows(planning.scene, planning.settings)
+
+
+def is_drawn(scene: Scene, settings: Settings) -> bool:
+    """Whether light is followed through the glass of a scene, if it has any."""
+    return not why_opaque(settings) and any_of(has_glass, scene.table.kinds)
+
+
+def tints_shadows(scene: Scene, settings: Settings) -> bool:
+    """Whether glass is no caster of what shadow maps see, but tints the lights that cast shadows."""
+    casts = settings.shadow_resolution > 0 and any(light.casts_shadow for light in scene.lights)
+    return casts and is_drawn(scene, settings)
+
+
+def why_opaque(settings: Settings) -> str:
     """The reason why glass is opaque, or ""."""
-    if not planning.settings.refraction:
+    if not settings.refraction:
         return "refraction is switched off"
-    if not planning.model.has_finish:
-        return f"{planning.model.name} shading has none"
-    return "splats are lit one by one" if planning.settings.lights_splats else ""
+    model = get_shading_model(settings.shading)
+    if not model.has_finish:
+        return f"{model.name} shading has none"
+    return "splats are lit one by one" if settings.lights_splats else ""
 
 
 def _to_glass(tile) -> np.ndarray:
     """From the view's space to that of the surfaces: the world's, relative to their origin."""
     matrix, place = np.eye(4), tile.camera.matrix_world
     matrix[:3, :3] = place[:3, :3] / tile.view.scale
-    matrix[:3, 3] = place[:3, 3] - tile.shared.glass.surfaces.origin
+    matrix[:3, 3] = place[:3, 3] - tile.shared.glass_surfaces.origin
     return matrix
 
 
@@ -50,6 +70,8 @@ def _window(tile) -> tuple[float, float, float, float]:
 
 #: Successive samples turn the rays behind rough glass by fractions of a turn that fill it evenly (the golden ratio).
 _TURN = math.pi * (math.sqrt(5) - 1)
+#: The same of their way from the middle of a lamp to its rim: its area is filled evenly beside the turns.
+_ASIDE = math.sqrt(2) - 1
 
 VALUES = {
     "to_glass": ("mat4", _to_glass),
@@ -57,12 +79,13 @@ VALUES = {
     "glass_window": ("vec4", _window),
     "glass_size": ("vec2", lambda tile: tile.shared.glass.size),
     "glass_scale": ("float", lambda tile: tile.view.scale),
+    "glass_aside": ("float", lambda tile: math.sqrt(_ASIDE * tile.camera.sample % 1)),
     "glass_turn": ("float", lambda tile: _TURN * tile.camera.sample % (2 * math.pi)),
-    "glass_leaves": ("float", lambda tile: tile.shared.glass.surfaces.leaves),
+    "glass_leaves": ("float", lambda tile: tile.shared.glass_surfaces.leaves),
 }
 INPUTS = {
     "glass_picture": lambda tile: tile.resources.kept(tile.shared.glass, tile.shared.glass.behind),
-    "glass_surfaces": lambda tile: tile.resources.kept(tile.shared.glass.surfaces, tile.shared.glass.surfaces.texels),
+    "glass_surfaces": lambda tile: tile.resources.kept(tile.shared.glass_surfaces, tile.shared.glass_surfaces.texels),
 }
 CONSTANTS = {
     "PICTURE_MAPS": PICTURE_MAPS,
@@ -75,13 +98,17 @@ def passes(planning):
     """None of its own: what is behind glass is drawn before the frame."""
     if planning.find(glass):
         planning.has("GLASS", "light is followed through glass to what is behind it")
+    if planning.find(shadows):
+        planning.has("GLASS SHADOWS", "lights are followed through glass")
     return ()
 
 
 def is_present(planning) -> bool:
-    return planning.find(glass)
+    return planning.find(glass) or planning.find(shadows)
 
 
 def parts(planning, p):
     if p.host in LIT_HOSTS and planning.model.has_finish:
-        yield Part("glass", inputs=("glass_picture", "glass_surfaces"))
+        words = tuple(word for word, of in (("see_through", glass), ("glass_shadows", shadows)) if planning.find(of))
+        behind = ("glass_picture",) if planning.find(glass) else ()
+        yield Part("glass", words, inputs=(*behind, "glass_surfaces"))

@@ -20,6 +20,7 @@ from ..probes.pictures import ProbePictures
 from ..sample_views import SampleViews, clip_around
 from ..scene import Instance, Scene
 from ..scene.camera import Camera
+from ..scene.glass_surfaces import GlassSurfaces
 from ..settings import Settings
 from ..shadows.maps import ShadowMap
 from ..view import View, build_view
@@ -36,7 +37,8 @@ _MOST_BYTES = 1 << 26
 class Shared:
     """A scene, the plan of its picture, and what depends on nothing else. samples: of the picture that are drawn one
     right after the other. history: as of `plan`. probes, mirror, glass: what the plan's probes see,
-    and its mirror, and what is behind its glass, if it has any. bounced: the scene's light, if the plan needs it."""
+    and its mirror, and what is behind its glass, if it has any. bounced: the scene's light, and glass_surfaces: its
+    glass, if the plan needs them."""
 
     def __init__(
         self,
@@ -49,9 +51,11 @@ class Shared:
         mirror: MirrorPicture | None = None,
         glass: GlassPicture | None = None,
         bounced: BouncedLight | None = None,
+        glass_surfaces: GlassSurfaces | None = None,
     ):
         self.scene, self.plan, self.settings, self.samples, self.history = scene, plan, settings, samples, history
         self.probes, self.mirror, self.glass, self.bounced = probes, mirror, glass, bounced
+        self.glass_surfaces = glass_surfaces
         self._kept: dict[Hashable, object] = {}
         self._tables: dict[tuple[bytes, bytes], Texture] = {}
         self._programs: dict[tuple, tuple[Pass, Pipeline]] = {}

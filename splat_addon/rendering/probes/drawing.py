@@ -19,7 +19,7 @@ from ..scene.octahedral import Octahedral
 from ..scene.panorama import Panorama
 from ..settings import Settings
 from ..shadows.receivers import Viewers
-from .glass import GlassPicture, WithoutGlass, behind_camera, surfaces_of
+from .glass import GlassApart, GlassPicture, behind_camera, surfaces_of
 from .mirrors import Mirror, MirrorPicture, mirrored_camera
 from .pictures import ProbePictures
 from .places import Probe
@@ -39,7 +39,7 @@ class Probes:
         self._mirrored: tuple[tuple, MirrorPicture] | None = None
         self._surfaces: tuple[tuple, GlassSurfaces] | None = None
         self._behind: tuple[tuple, GlassPicture] | None = None
-        self._without_glass = WithoutGlass()
+        self.apart = GlassApart()
 
     def pictures(
         self, scene: Scene, probes: tuple[Probe, ...], side: int, settings: Settings, draw: Draw, is_draft: bool,
@@ -94,19 +94,24 @@ class Probes:
         """What a camera sees behind glass: the same object as long as both stay. known: what the probes see."""
         plain = replace(_reflecting(_plain(settings), known), supersampling=2)
         behind, of_scene = behind_camera(camera), contents(scene)
-        if self._surfaces is None or self._surfaces[0] != of_scene:
-            self._surfaces = of_scene, surfaces_of(scene.table)
         view = behind.matrix_world.tobytes(), behind.window, behind.size, behind.near, behind.far
         made_from = view, behind.is_orthographic, plain, known, of_scene
         if self._behind is None or self._behind[0] != made_from:
-            seen = draw(self._without_glass.of(scene), behind, Viewers(behind, (behind,)), plain, known)
-            self._behind = made_from, GlassPicture(self._surfaces[1], behind, seen)
+            seen = draw(self.apart.without(scene), behind, Viewers(behind, (behind,)), plain, known)
+            self._behind = made_from, GlassPicture(behind, seen)
         return self._behind[1]
+
+    def surfaces(self, scene: Scene) -> GlassSurfaces:
+        """The scene's glass: the same object as long as the scene is."""
+        of_scene = contents(scene)
+        if self._surfaces is None or self._surfaces[0] != of_scene:
+            self._surfaces = of_scene, surfaces_of(scene.table)
+        return self._surfaces[1]
 
     def _seen(self, scene: Scene, rows: tuple[int, ...], settings: Settings) -> Scene:
         """The scene in which what is in these rows of its table, and clear glass, only casts its shadow."""
         seen = _left_out(scene, rows)
-        return self._without_glass.of(seen) if settings.refraction else seen
+        return self.apart.without(seen) if settings.refraction else seen
 
     def forget(self) -> None:
         self._kept = self._mirrored = self._surfaces = self._behind = None
@@ -116,7 +121,7 @@ def _plain(settings: Settings) -> Settings:
     """Settings for what probes see: blurred and filtered later, and without what things in it reflect."""
     return replace(
         settings, method="quad", lines=None, eye_dome=None, supersampling=1, samples=1, multisampling=0,
-        edge_threshold=0.0, filter_variance=Settings.filter_variance, reflections=False, refraction=False,
+        edge_threshold=0.0, filter_variance=Settings.filter_variance, reflections=False,
         transparent_film=True, as_printed=False, outputs=("color", "depth"), profile=False,
     )  # fmt: skip
 

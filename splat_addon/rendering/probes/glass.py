@@ -32,41 +32,58 @@ def has_glass(placed: Placed) -> bool:
     return not placed.is_holdout and any(map(is_glass, placed.materials))
 
 
+def _shows_glass(placed: Placed) -> bool:
+    return placed.is_seen and has_glass(placed)
+
+
 def glass_slots(placed: Placed) -> np.ndarray:
     """(n,) bool: which surfels or corners of an object are of glass."""
     slots = np.array([is_glass(material) for material in placed.materials])
     return slots[np.minimum(placed.shape.materials, len(slots) - 1)]
 
 
-class WithoutGlass:
-    """Scenes without what is of glass, which only casts its shadow; shapes of which a part is glass are kept."""
+class GlassApart:
+    """Scenes whose glass is apart from the rest, as are the parts of shapes that are glass. They are kept."""
 
     def __init__(self):
-        self._rest: WeakKeyDictionary = WeakKeyDictionary()
+        self._shapes: WeakKeyDictionary = WeakKeyDictionary()
+        self._scenes: WeakKeyDictionary = WeakKeyDictionary()
 
-    def of(self, scene: Scene) -> Scene:
-        """The scene without glass: the same object if it has none."""
-        if not any(has_glass(kind.placed) for kind in scene.table.kinds):
+    def without(self, scene: Scene) -> Scene:
+        """The scene in which glass only casts its shadow: the same object if it has none."""
+        return self._made(scene, is_seen=False)
+
+    def without_shadows(self, scene: Scene) -> Scene:
+        """The scene in which glass casts none: the same object if it has none."""
+        return self._made(scene, casts_shadow=False)
+
+    def _made(self, scene: Scene, **changes: bool) -> Scene:
+        if not any(_shows_glass(kind.placed) for kind in scene.table.kinds):
             return scene
-        return replace(scene, surfels=self._parted(scene.surfels), polygons=self._parted(scene.polygons))
+        known, key = self._scenes.setdefault(scene, {}), tuple(changes)
+        if key not in known:
+            known[key] = replace(
+                scene, surfels=self._parted(scene.surfels, changes), polygons=self._parted(scene.polygons, changes)
+            )
+        return known[key]
 
-    def _parted(self, placed: tuple[Placed, ...]) -> tuple[Placed, ...]:
+    def _parted(self, placed: tuple[Placed, ...], changes: dict[str, bool]) -> tuple[Placed, ...]:
         made = []
         for one in placed:
-            if not (one.is_seen and has_glass(one)):
-                made.append(one)
-                continue
-            made.append(replace(one, is_seen=False))
-            if (rest := self._shape(one)) is not None:
-                made.append(replace(one, shape=rest, casts_shadow=False))
+            parts = _shows_glass(one) and self._parts(one)
+            if isinstance(parts, tuple):
+                made += replace(one, shape=parts[0], **changes), replace(one, shape=parts[1])
+            else:
+                made.append(replace(one, **changes) if parts else one)
         return tuple(made)
 
-    def _shape(self, placed: Placed):
-        """What of a shape is not glass; None for nothing."""
-        slots, known = tuple(map(is_glass, placed.materials)), self._rest.setdefault(placed.shape, {})
+    def _parts(self, placed: Placed) -> tuple | bool:
+        """What of a shape is glass, and what is not, or whether all of it is."""
+        slots, known = tuple(map(is_glass, placed.materials)), self._shapes.setdefault(placed.shape, {})
         if slots not in known:
-            rows = np.flatnonzero(~glass_slots(placed))
-            known[slots] = placed.shape.take(rows) if len(rows) else None
+            which, shape = glass_slots(placed), placed.shape
+            is_mixed = which.any() and not which.all()
+            known[slots] = (shape.take(which), shape.take(~which)) if is_mixed else bool(which.any())
         return known[slots]
 
 
@@ -84,10 +101,10 @@ def behind_camera(camera: Camera) -> Camera:
 
 
 class GlassPicture:
-    """What is seen behind glass, and the glass itself. seen: by the camera, without glass."""
+    """What is seen behind glass. seen: by the camera, without glass."""
 
-    def __init__(self, surfaces: GlassSurfaces, camera: Camera, seen: Frame):
-        self.surfaces, self.window, self.size, self._seen = surfaces, camera.window, camera.size, seen
+    def __init__(self, camera: Camera, seen: Frame):
+        self.window, self.size, self._seen = camera.window, camera.size, seen
 
     def behind(self) -> np.ndarray:
         """(h, w, 4) float32, as of `picture_texels`."""
@@ -96,5 +113,5 @@ class GlassPicture:
 
 def surfaces_of(table: InstanceTable) -> GlassSurfaces:
     """The glass of a scene."""
-    rows = np.flatnonzero(table.of_kinds(lambda placed: placed.is_seen) & table.of_kinds(has_glass))
+    rows = np.flatnonzero(table.of_kinds(_shows_glass))
     return GlassSurfaces.of([(table.placed[row], glass_slots(table.placed[row])) for row in rows.tolist()])

@@ -33,8 +33,9 @@ class GlassSurfaces:
 
     origin: (3,) float64, what places are relative to. corners: (N, 3, 3) float32 of a triangle, or a disc's middle and
     half-axes. normals: (N, 3, 3) for shading, a disc's three times. are_discs: (N,) bool. tints: (N, 3) what a crossing
-    keeps of light. iors, roughness: (N,). order: (L,) primitives, leaf by leaf, -1 for none. low, high: (2 L / LEAF, 6)
-    the boxes of the tree, and of their own normals; row 0 is nothing. without: how many there was no room for.
+    keeps of light. iors, roughness: (N,). cast: (N,) bool, shadows. order: (L,) primitives, leaf by leaf, -1 for none.
+    low, high: (2 L / LEAF, 6) the boxes of the tree, and of their own normals; row 0 is nothing. without: how many had
+    no room.
     """
 
     origin: np.ndarray
@@ -44,6 +45,7 @@ class GlassSurfaces:
     tints: np.ndarray
     iors: np.ndarray
     roughness: np.ndarray
+    cast: np.ndarray
     order: np.ndarray
     low: np.ndarray
     high: np.ndarray
@@ -84,7 +86,7 @@ class GlassSurfaces:
         made[places, :3], made[places, 3, :3] = planes, self.normals[of, 0]
         made[places, 3, 3] = np.where(self.are_discs[of], sizes / 2, 0.0)
         made[rest, :2, :3], made[rest, 2, :3] = self.normals[of, 1:], self.tints[of]
-        made[rest, 0, 3], made[rest, 1, 3] = self.iors[of], self.roughness[of]
+        made[rest, 0, 3], made[rest, 1, 3], made[rest, 2, 3] = self.iors[of], self.roughness[of], self.cast[of]
         return made.reshape(-1, 4 << ROW_BITS, 4)
 
 
@@ -125,6 +127,7 @@ def _origin_of(placed: list[Placed]) -> np.ndarray:
 
 _NOTHING = (
     *(np.zeros((0, 3, 3)) for _ in range(2)), np.zeros(0, bool), np.zeros((0, 3)), *(np.zeros(0) for _ in range(2)),
+    np.zeros(0, bool),
 )  # fmt: skip
 
 
@@ -153,7 +156,8 @@ def _primitives(placed: Placed, which: np.ndarray, origin: np.ndarray) -> tuple[
     tints = np.maximum(colors, 0.0) ** power[:, None]
     if not is_disc and np.linalg.det(linear) < 0:
         corners, normals = corners[:, [0, 2, 1]], normals[:, [0, 2, 1]]
-    return corners, normals, np.full(len(corners), is_disc), tints, ior, roughness
+    are_discs, cast = (np.full(len(corners), value) for value in (is_disc, placed.casts_shadow))
+    return corners, normals, are_discs, tints, ior, roughness, cast
 
 
 def _ior(material) -> float:

@@ -103,7 +103,7 @@ def pack_lights(lights: tuple[Light, ...], world_to_view: np.ndarray, scale: flo
     place, w: 1, or for a sun the direction to it and 0 | irradiance at distance 1 that faces it (of an area the
     intensity along its axis), half-side of a square as large as it | axis, cosine of a spot's half-angle | half-axis u,
     1 / width of a spot's rim | half-axis v, 1 for an area | 1 for each set that it lights |
-    first shadow map, number of shadow maps, size of the lamp that casts them.
+    first shadow map, number of shadow maps, size of the lamp that casts them, 1 for one that casts shadows.
     """
     texels = np.zeros((len(lights), TEXELS_PER_LIGHT, 4))
     rotation = world_to_view[:3, :3]
@@ -118,6 +118,7 @@ def pack_lights(lights: tuple[Light, ...], world_to_view: np.ndarray, scale: flo
         row[1] = *(np.asarray(light.color, np.float64) * strength), half_side
         row[2] = *axis, -2.0
         row[3, 3] = 1.0
+        row[6, 3] = light.casts_shadow
         row[5] = [light.receivers is None or number in light.receivers for number in range(MAX_LIGHT_SETS)]
         if light.kind == "spot":
             cosine = math.cos(light.spot_angle / 2)
