@@ -84,9 +84,12 @@ class Effects:
 
 def _kind(number, old, new, values: dict) -> Kind | None:
     """The effect of a new value instead of an old one; None if it is not worth a thought."""
-    apart = mean_flip(values[new].color, values[old].color)
+    one, other = values[old], values[new]
+    apart = mean_flip(other.color, one.color)
+    if apart == 0 and (one.splats, one.bytes) == (other.splats, other.bytes):
+        return None
     is_closer = number.rank(new) < number.rank(old)
-    time = values[new].seconds / values[old].seconds
+    time = other.seconds / one.seconds
     # a picture that is closer is not faster, and one that saves little may only have been measured so
     time = max(time, 1.0) if is_closer else time
     if apart < _LEAST_FLIP if is_closer else time > 1 - _LEAST_SAVING:

@@ -185,7 +185,8 @@ def test_a_choice_of_other_settings_is_drawn_before_it_is_promised(truth, room, 
 
 
 def test_effects_are_those_of_single_changes(shot):
-    """A change that moves the picture away adds to the square of its error, one that saves nothing is not tried."""
+    """A change that moves the picture away adds to the square of its error; one that saves nothing, or changes
+    nothing, is not tried."""
     base = Choice("base", {"method": "mip", "samples": 1}, "base")
     tried = tried_beside(base, FLAT, plan(*shot, FLAT))
     assert {choice.numbers[0][0] for choice in tried} == {"detail_tolerance", "storage", "sum_format"}
@@ -203,6 +204,8 @@ def test_effects_are_those_of_single_changes(shot):
     assert closer.squared < 0 and closer.time == 1.0 and closer.flip(0.1) < 0.1
     assert farther.squared == -closer.squared and farther.time == 0.5
     assert farther.flip(0.1) == pytest.approx((0.01 + farther.squared) ** 0.5)
+    alike = [picture(0.5, each, 0.5) for each in tried]
+    assert list(Effects(picture(0.5, base, 1.0), alike, FLAT, [base]).kinds(base)) == []
 
 
 def test_the_page_is_whole_and_holds_the_pictures():

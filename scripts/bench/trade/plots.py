@@ -21,7 +21,7 @@ COLORS = dict(zip(METHODS, (*pyplot.cm.tab10.colors, "0.2", "0.5")))
 _DPI = 100
 
 #: What is behind a name, so that it can be read over points and lines.
-_PLATE = {"facecolor": "white", "alpha": 0.7, "edgecolor": "none", "pad": 0.5}
+_PLATE = {"facecolor": "white", "alpha": 0.5, "edgecolor": "none", "pad": 0.5}
 
 #: Scenes of the plot, and of the pictures.
 PLOTTED, SHOWN = ("checker200", "text", "armadillo"), ("text", "torus")
