@@ -4,9 +4,13 @@
 #part splat
 #include "lib/own_threshold.glsl"
 
-// Several splats overlap at each point of a surface, so each is drawn less often than the surface is opaque.
+// Several splats overlap at each point of a surface, so each is drawn less often than the surface is opaque. They are no
+// larger than it takes to leave no gaps, because whole splats reach beyond the rims of leaves.
 void splat_holes_resize(inout Splat splat, int index) {
   bool is_merged = float(index) >= draw.first_merged;
+  float size = is_merged ? MERGED_HOLE_SIZE : HOLE_SIZE;
+  splat.axis_u *= size;
+  splat.axis_v *= size;
   float overlaps = is_merged ? MERGED_OVERLAPS * splat.shortened * splat.shortened : OVERLAPS;
   float drawn = 1.0 - pow(1.0 - splat.opacity, 1.0 / overlaps);
   float surface = surface_number(index, int(instance.normal_matrix[3].x));

@@ -29,8 +29,16 @@ passes, is_present = counted(
     "no image cuts holes into surfels",
 )
 
+#: Of the half-axes of samples' splats and of merged ones: as small as leaves no gaps.
+SIZE, MERGED_SIZE = 0.6, 0.8
+
 #: How many splats of a surface overlap at a point: the area of one over that of its cell. The same of merged ones.
-CONSTANTS = {"OVERLAPS": math.pi * SAMPLE_SIZE**2, "MERGED_OVERLAPS": math.pi * MERGED_OVERLAP**2}
+CONSTANTS = {
+    "HOLE_SIZE": SIZE,
+    "MERGED_HOLE_SIZE": MERGED_SIZE,
+    "OVERLAPS": math.pi * (SIZE * SAMPLE_SIZE) ** 2,
+    "MERGED_OVERLAPS": math.pi * (MERGED_SIZE * MERGED_OVERLAP) ** 2,
+}
 
 
 def parts(planning, p):
