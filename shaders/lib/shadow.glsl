@@ -142,7 +142,8 @@ Met tap_toward(ShadowPlace here, vec3 toward, int number) {
 
 // Blockers outside the cone of rays from the point to the lamp, like the other side of an open fold, hide none of it. In
 // the search they hardly count, but they are found there, so that the outermost part of a penumbra is not missed. Of the
-// taps that follow, at a mean distance, only those far outside the cone are left out.
+// taps that follow, at a mean distance, only those far outside the cone are left out: where a near and a far blocker
+// meet, their mean distance says nothing about the near one.
 const float LEAST_COUNT = 0.01, WIDEST_CONE = 2.0;
 
 // Rays pass the point towards parts of the lamp, whose half-axes lamp_u and lamp_v are in the light's view (tangents
@@ -171,16 +172,19 @@ float soft_share(ShadowPlace here, float bias, float size, vec3 lamp_u, vec3 lam
   float blocker = sum / blockers;
   float gap = max(is_parallel ? whole - blocker : whole / blocker - 1.0, 0.0);
   if (size * gap < 4.0 * bias) return hard_share(here, bias);
-  float lit = 0.0;
+  float lit = 0.0, counted = 0.0;
   for (int i = 0; i < FILTER_TAPS; i++) {
     vec2 tap = soft_tap(i, FILTER_TAPS);
     float past = tap.x * min(gap, reach);
     Met met = tap_toward(here, here.position + past * (cos(tap.y) * lamp_u + sin(tap.y) * lamp_v), i);
     float before = max(past - 2.0 * close, 0.0) / WIDEST_CONE;
     bool is_near_cone = is_parallel ? met.way + before <= whole : met.way * (1.0 + before) <= whole;
-    lit += met.depth + bias < met.lit && is_near_cone ? 0.0 : 1.0;
+    bool is_hidden = met.depth + bias < met.lit;
+    if (is_hidden && !is_near_cone) continue;
+    counted += 1.0;
+    lit += is_hidden ? 0.0 : 1.0;
   }
-  return lit / float(FILTER_TAPS);
+  return counted > 0.0 ? lit / counted : 1.0;
 }
 
 // caster: first map of the light, number of its maps, and its size in units of the shaded view (for a sun unchanged).

@@ -80,3 +80,16 @@ def test_a_penumbra_is_what_rays_say_and_not_torn(lamp, caster, error):
 def test_each_sample_of_a_picture_has_its_own_taps(lamp, error):
     """Otherwise a penumbra would wear the same hatch in each sample, and their mean would, too: 0.8 as rough."""
     assert roughness(error(lamp, "floating", samples=16)) < 0.5 * roughness(error(lamp, "floating", samples=1))
+
+
+def test_a_caster_far_above_another_makes_nothing_brighter(render, floor):
+    """The edge of the roof's shadow crosses the box's. 0.21 of the light is left there in the worst pixel; 0.41 if taps
+    that meet the box count as light where the mean distance of box and roof says nothing about it."""
+    lamp, near = replace(LAMPS["sun"], size=0.06), sampled(*CASTERS["standing"], 48)
+    roof = sampled((-1, -0.56, 6.0), (9, 9, 6.2), 40)
+    settings = Settings(outputs=("color", "shadow"))
+    alone, under = (render(Scene([floor, *casters], [lamp]), CAMERA, settings).shadow[..., 0]
+                    for casters in ((near,), (near, roof)))  # fmt: skip
+    falls, is_dark = (alone > 0.9) & (under < 0.1), alone < 0.01
+    assert falls.sum() > 200 and is_dark.sum() > 200
+    assert under[is_dark].max() < 0.3
