@@ -29,7 +29,7 @@ passes, is_present = counted(
     "no image cuts holes into surfels",
 )
 
-#: Of the half-axes of samples' splats and of merged ones: as small as leaves no gaps.
+#: Factors of the half-axes of samples' splats and of merged ones, which leave no gaps.
 SIZE, MERGED_SIZE = 0.6, 0.8
 
 #: How many splats of a surface overlap at a point: the area of one over that of its cell. The same of merged ones.
