@@ -170,7 +170,7 @@ const int GLASS_TAPS = 12;
 const float GOLDEN_TURN = 2.39996323;
 // From this spread on, radians, rays are told apart.
 const float FROSTED = 0.01;
-// A ray that keeps less of its light crosses no more surfaces.
+// A ray that keeps less of its light meets no more surfaces.
 const float GLASS_LEAST = 0.01;
 
 // One of the rays into which a rough surface parts one, whose spread is that of its lobe (GGX), with long tails. They
@@ -209,7 +209,9 @@ vec3 through_glass(vec3 position, vec3 normal) {
     bool looks = true, ends = true;
     vec3 counts = share;
     if (part < 0) {
-      if (i < GLASS_CROSSINGS && most_of(share) > GLASS_LEAST) met = met_glass(from, along, side);
+      bool goes_on = i < GLASS_CROSSINGS && most_of(share) > GLASS_LEAST;
+      if (!goes_on && side > 0.0 && frosted2 == 0.0) break;  // what does not leave glass is black, as in Cycles
+      if (goes_on) met = met_glass(from, along, side);
       if (frosted2 == 0.0 && side < 0.0 && spread2 > FROSTED * FROSTED) {
         frosted2 = spread2;
         before = GlassRay(from, along, FAR, vec2(0.0), met.away);
