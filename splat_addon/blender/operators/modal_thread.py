@@ -27,6 +27,7 @@ class ModalThread:
 
     _work: Work | None = None
     _job: Future | None = None
+    _status: str | None = None
     _timer = None
 
     def _advance(self, context: bpy.types.Context) -> set[str]:
@@ -51,8 +52,11 @@ class ModalThread:
             self._work.is_cancelled = True
         if event.type != "TIMER":
             return {"RUNNING_MODAL"}
-        context.window_manager.progress_update(self._work.share)
-        context.workspace.status_text_set(self._work.status())
+        status = self._work.status()
+        if status != self._status:  # each change has windows drawn again
+            self._status = status
+            context.window_manager.progress_update(self._work.share)
+            context.workspace.status_text_set(status)
         return self._advance(context) if self._job is None or self._job.done() else {"RUNNING_MODAL"}
 
     def cancel(self, context):

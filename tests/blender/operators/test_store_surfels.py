@@ -276,7 +276,7 @@ def test_esc_ends_what_is_done_next_and_keeps_what_is_done(window):
 def test_ctrl_c_in_the_background_leaves_nothing(opaque, saved, monkeypatch):
     write_ply(saved / "scan.ply", opaque(3000))
 
-    def press(*_):
+    def press(*_, **__):
         raise KeyboardInterrupt
 
     monkeypatch.setattr("splat_addon.streaming.writing.build_hierarchy", press)
