@@ -9,6 +9,8 @@ import pytest
 
 from splat_addon.rendering import PRESETS
 from splat_addon.rendering.methods import METHODS
+from splat_addon.sampling import REDUCTIONS
+from splat_addon.trade.choices import NUMBERS
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 LABELS = {method.label: name for name, method in METHODS.items()}
@@ -61,6 +63,19 @@ def test_no_choice_is_better_than_a_preset_in_all_respects(preset):
         return any(t <= time and all(a <= b for a, b in zip(errors, flips, strict=True)) for t, errors in rows.values())
 
     assert not all(map(is_dominated, FILTERS))
+
+
+def column(head: str, name: str) -> set[str]:
+    """The cells of a column of the page's table that begins with a head."""
+    (table,) = (each for each in tables("evidence/trade.md") if each[0][0] == head)
+    return {row[table[0].index(name)] for row in table[1:]}
+
+
+def test_settings_reductions_and_presets_of_the_page_exist():
+    known = {number.name(value) for number in NUMBERS for value in number.values}
+    assert column("scene", "setting") <= known | {"As set"}
+    assert {name.replace(" ", "_") for name in column("reduction", "reduction")} <= set(REDUCTIONS)
+    assert column("preset", "preset") == {preset.label for preset in PRESETS.values()}
 
 
 def test_choose_names_the_presets_and_the_methods():
