@@ -16,7 +16,8 @@ def prepare(given: dict[str, np.ndarray], kind: str):
     cloud.colors = open3d.utility.Vector3dVector(encoded(given["colors"][:, :3]) / 255.0)
     renderer = rendering.OffscreenRenderer(size, size)
     renderer.scene.view.set_post_processing(False)
-    grey = float(encoded(np.array(given["background"]))) / 255
+    # only the background is decoded first
+    grey = float(encoded(encoded(given["background"]) / 255)) / 255
     renderer.scene.set_background((grey, grey, grey, 1.0))
     material = rendering.MaterialRecord()
     material.shader, material.point_size = "defaultUnlit", float(given["pixels"])
