@@ -27,8 +27,8 @@ _MOST_SURFELS = 0.9
 _ROUNDS = 6
 #: Surfels whose neighbours are looked for at a time.
 _PORTION = 1 << 13
-#: Places at which a set is looked at, and surfels at each. It consists of pieces if at least this share of them is of
-#: pieces of so many, as noise has fewer, to so many surfels.
+#: Places at which a set is looked at, and surfels at each. It consists of pieces if at least this share of what is
+#: there belongs to pieces whose sizes lie between the last two numbers; noise makes smaller ones.
 _PLACES, _THERE, _OF_PIECES, _LEAST, _MOST = 3, 1 << 12, 0.5, 6, 1 << 9
 
 
