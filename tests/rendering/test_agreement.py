@@ -463,7 +463,7 @@ def named(name: str, method: str, options: dict) -> str:
     )
 
 
-#: Surfaces of glass that a ray may cross, at the rim of each of which it may fall either way.
+#: Surfaces of glass that a ray to the eye or a lamp may cross, at the rim of each of which it may fall either way.
 CROSSINGS = 10
 
 USUAL = {"supersampling": 1, "shadow_resolution": 256}
@@ -491,7 +491,7 @@ def test_picture_is_the_same_on_every_device(name, render, on_both_devices):
             SURFACES if has_layers else SPRITES if described.hides_within == "sprite" else 1
         )  # each of them may tie
         if settings.refraction:
-            samples *= CROSSINGS
+            samples *= CROSSINGS * (1 + sum(light.casts_shadow for light in scene.lights))
         for array in here.keys() - {"layers"}:
             differs = are_apart(array, here, standalone, settings, has_layers)
             if array in ("color", "normal") and filters:
