@@ -20,9 +20,6 @@ COLORS = dict(zip(METHODS, (*pyplot.cm.tab10.colors, "0.2", "0.5")))
 #: Pixels an inch of the figures: what is set in points can be read without enlarging.
 _DPI = 100
 
-#: What is behind a name, so that it can be read over points and lines.
-_PLATE = {"facecolor": "white", "alpha": 0.5, "edgecolor": "none", "pad": 0.5}
-
 #: Scenes of the plot, and of the pictures.
 PLOTTED, SHOWN = ("checker200", "text", "armadillo"), ("text", "torus")
 
@@ -74,19 +71,31 @@ def _panel(axis, rows: list[dict], error: str) -> None:
         color = COLORS[row["method"]]
         face = "white" if row["multisampling"] else color
         axis.scatter(row["ratio"], row[error], c=[face], edgecolors=[color], s=34)
-    for number, row in enumerate(best):
-        samples = "4 in hardware" if row["multisampling"] else row["samples"].replace(" ", "")
-        way = (5, 5) if number % 2 == 0 else (5, -13)
-        name = f"{METHODS[row['method']].label} {samples}"
-        axis.annotate(name, (row["ratio"], row[error]), fontsize=9, xytext=way, textcoords="offset points", bbox=_PLATE)
     axis.set(xscale="log", yscale="log")
-    axis.margins(x=0.25, y=0.12)
+    axis.margins(x=0.3, y=0.15)
+    _name(axis, best, error)
     axis.tick_params(labelsize=9, which="both")
     for side in (axis.xaxis, axis.yaxis):
         side.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))
         side.set_major_formatter("{x:g}")
         side.set_minor_formatter(ticker.NullFormatter())
     axis.grid(alpha=0.3)
+
+
+def _name(axis, best: list[dict], error: str) -> None:
+    """Names of the frontier's points: to their left and below, where no other points are, and below one another."""
+    free = np.inf
+    for number, row in enumerate(best):
+        samples = "4 in hardware" if row["multisampling"] else row["samples"].replace(" ", "")
+        place = {"ha": "right", "va": "top", "xytext": (-6, -1)}
+        if number == 0:
+            place = {"ha": "center", "va": "bottom", "xytext": (6, 5)}
+        else:
+            height = axis.transData.transform((row["ratio"], row[error]))[1] * 72 / axis.figure.dpi
+            place["xytext"] = (-6, min(-1, free - height))
+            free = height + place["xytext"][1] - 11
+        name = f"{METHODS[row['method']].label} {samples}"
+        axis.annotate(name, (row["ratio"], row[error]), fontsize=9, textcoords="offset points", **place)
 
 
 def pictured(drawn: dict, truth: np.ndarray) -> dict[str, tuple[np.ndarray, np.ndarray]]:
