@@ -164,7 +164,7 @@ def _choice(setting: bpy.types.Property) -> dict:
 
 
 def _switch(setting: bpy.types.Property) -> dict:
-    return {"action": "store_true"}
+    return {"action": argparse.BooleanOptionalAction, "default": setting.default}
 
 
 #: type of a property -> function of it that returns how its argument is read

@@ -98,6 +98,9 @@ def begin_series(
     mesh[SERIES_ORIGIN] = (np.array(made.matrix_world.translation, np.float64) + offset_of(mesh)).tolist()
     series.shown = _told(series, shown)
     series.path = path  # the last, because it begins to show frames
+    for scene in made.users_scene:
+        # Blender draws nothing else while a render reads its next frame
+        scene.render.use_lock_interface = True
     return said(
         "Took {count:,} files as a series, for the frames {first:,} to {last:,}",
         count=len(files),

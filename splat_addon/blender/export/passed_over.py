@@ -79,14 +79,14 @@ def _does_nothing(socket: bpy.types.NodeSocket, neutral: Any) -> bool:
 #: kind of thing -> a function that tells whether it is used, and the end of the sentence about its owner
 _Rules = tuple[tuple[Callable[[Any], bool], str], ...]
 
-#: Rays that this engine does not trace: what hides an object from them changes nothing that it shows. Blender 5.2 has
-#: the last.
-_OBJECT_RAYS = tuple(f"visible_{ray}" for ray in ("diffuse", "glossy", "transmission", "volume_scatter", "raycast"))
+#: Rays that this engine does not tell from others: what hides an object from them changes nothing that it shows.
+#: Reflections leave out what is hidden from glossy rays. Blender 5.2 has the last.
+_OBJECT_RAYS = tuple(f"visible_{ray}" for ray in ("diffuse", "transmission", "volume_scatter", "raycast"))
 
 _OBJECTS: _Rules = (
     (
         lambda o: not all(getattr(o, name, True) for name in _OBJECT_RAYS),
-        "is hidden from diffuse, glossy or other rays, which this engine does not trace",
+        "is hidden from diffuse, transmission or other rays, which this engine passes over",
     ),
     (lambda o: o.is_shadow_catcher, "is a shadow catcher, and this engine draws it as it is"),
     (

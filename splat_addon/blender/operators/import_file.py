@@ -222,8 +222,6 @@ contents tell"""
             if self.is_series:
                 path = relative_path(absolute(self.filepath))
                 self._tell([begin_series(made, path, self._frame_offset, self, Reading.of(self), work.path)])
-                # Blender draws nothing else while a render reads its next frame
-                context.scene.render.use_lock_interface = True
             self._tell_place(made, work.surfels)
         else:
             self._finish_keeping(context, work)

@@ -1,9 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """`surfels points` makes a new .blend of files, without one that is open."""
 
+import argparse
+
 import bpy
 import numpy as np
 
+from splat_addon.blender.commands.points import add_points_arguments
+from splat_addon.blender.conversion.points_settings import PointsProperties
+from splat_addon.blender.conversion.source_record import SurfelPointsSettings
 from splat_addon.blender.geometry.attributes import read_surfels
 
 
@@ -57,3 +62,19 @@ def test_a_file_that_cannot_be_read_is_named_and_nothing_is_saved(surfels_comman
     assert code == 1 and "bad.las: The LAS file ends in its header" in said and not (tmp_path / "scan.blend").exists()
     code, said = surfels_command("points", tmp_path / "none.las", "--out", tmp_path / "scan.blend")
     assert code == 1 and "none.las: No such file" in said
+
+
+def test_what_is_not_said_is_as_in_the_interface(add_on):
+    parser = argparse.ArgumentParser()
+    add_points_arguments(parser)
+    taken, settings = parser.parse_args([]), SurfelPointsSettings.bl_rna.properties
+    names = PointsProperties.__annotations__
+    assert {name: getattr(taken, name) for name in names} == {name: settings[name].default for name in names}
+    assert not parser.parse_args(["--no-thins-overlaps"]).thins_overlaps
+
+
+def test_a_series_locks_the_interface_while_it_is_rendered(surfels_command, tmp_path):
+    plane(tmp_path / "walk1.ply", 0)
+    assert surfels_command("points", tmp_path / "walk1.ply", "--series", "--out", tmp_path / "walk.blend")[0] == 0
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "walk.blend"))
+    assert bpy.context.scene.render.use_lock_interface
