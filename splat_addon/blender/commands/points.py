@@ -32,6 +32,17 @@ DESCRIPTION = (
 )
 
 
+#: argument about how files are read or shown -> how it is written
+_OF_FILES = {
+    "most_points": "--most",
+    "series": "--series",
+    "plain": "--plain",
+    "float_colors": "--float-colors",
+    "text_columns": "--columns",
+    "color_by": "--color-by",
+}
+
+
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", required=True, help="the new .blend, or its FOLDER/")
     source = parser.add_mutually_exclusive_group()
@@ -82,9 +93,19 @@ def add_points_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def refuse_those_of_files(options: argparse.Namespace) -> None:
+    """Raise ValueError for an argument about files, where objects are given: it would have no effect."""
+    without = (None, 0, "", FLOAT_COLORS[0])
+    for name, flag in _OF_FILES.items():
+        if getattr(options, name, None) not in without:
+            raise ValueError(f"{flag} is about files and changes nothing of objects; leave it out, or name files.")
+
+
 def run(options: argparse.Namespace) -> Iterator[Path]:
     """Convert, and yield the written file. Raises ValueError or OSError; nothing is saved if any object cannot be
     converted."""
+    if not options.files:
+        refuse_those_of_files(options)
     out = result(options)
     with claimed(made_room(out)):
         if not options.again and is_blend_there(out):

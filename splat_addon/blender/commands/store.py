@@ -24,7 +24,7 @@ from ..geometry.world_surfels import world_surfels
 from ..operators.file_paths import file_sentence
 from .convert import add_density_arguments, batch_of, refuse, sources_of
 from .out_paths import file_at, made_room
-from .points import add_points_arguments
+from .points import add_points_arguments, refuse_those_of_files
 
 HELP = "store surfels in a file that views stream"
 DESCRIPTION = (
@@ -46,6 +46,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> Iterator[Path]:
     """Store, and yield the written file. Raises ValueError or OSError; then there is no file."""
+    if not options.file:
+        refuse_those_of_files(options)
     out = file_at(options.out, SUFFIX, options.file.stem if options.file else "")
     with claimed(made_room(out)):
         if not options.again and _is_there(out):

@@ -5,6 +5,7 @@ import argparse
 
 import bpy
 import numpy as np
+import pytest
 
 from splat_addon.blender.commands.points import add_points_arguments
 from splat_addon.blender.conversion.points_settings import PointsProperties
@@ -78,3 +79,11 @@ def test_a_series_locks_the_interface_while_it_is_rendered(surfels_command, tmp_
     assert surfels_command("points", tmp_path / "walk1.ply", "--series", "--out", tmp_path / "walk.blend")[0] == 0
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "walk.blend"))
     assert bpy.context.scene.render.use_lock_interface
+
+
+@pytest.mark.parametrize(
+    "given", [("--most", 9), ("--series",), ("--plain",), ("--columns", "x y z"), ("--color-by", "height")]
+)
+def test_what_is_about_files_is_refused_for_objects(given, surfels_command, animation, tmp_path):
+    code, said = surfels_command("points", "--objects", "floor", *given, "--out", tmp_path / "a.blend")
+    assert code == 1 and f"{given[0]} is about files" in said and not [*tmp_path.glob("a.blend*")]

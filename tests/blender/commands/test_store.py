@@ -42,6 +42,8 @@ def test_objects_are_stored_in_world_space_and_converted_if_they_are_no_surfels(
     assert found.positions[:, 2].max() + found.origin[2] >= 3 and sorted(tmp_path.iterdir())[-1] == out
     np.testing.assert_allclose(sorted_places(found), sorted_places(whole), atol=1e-5)
     assert "there already" in surfels_command("store", "--objects", name, "--out", out)[1]
+    code, said = surfels_command("store", "--objects", name, "--color-by", "height", "--out", out)
+    assert code == 1 and "--color-by is about files" in said
 
 
 def test_a_ply_file_is_stored_and_told_of_without_a_blend(animation, surfels_command, surfels_of, tmp_path):
@@ -49,6 +51,8 @@ def test_a_ply_file_is_stored_and_told_of_without_a_blend(animation, surfels_com
     write_ply(tmp_path / "scan.ply", surfels)
     bpy.ops.wm.read_factory_settings(use_empty=True)
     out = tmp_path / "scan.surfelblocks"
+    code, said = surfels_command("store", "--ply", tmp_path / "scan.ply", "--color-by", "height", "--out", out)
+    assert code == 1 and "keep their colours" in said and not out.exists()
     assert surfels_command("store", "--ply", tmp_path / "scan.ply", "--out", out)[0] == 0
     code, said = surfels_command("info", out, "--json")
     facts = json.loads(said)
