@@ -70,8 +70,8 @@ PRESETS = {
             "final",
             "Final",
             (
-                "The sharpest, for stills and for pictures that are scaled down later. Takes about twice as long as "
-                "Preview; raise Supersampling to 5 for detail far below a pixel"
+                "The sharpest, for stills and for pictures that are scaled down later. Takes two to three times as "
+                "long as Preview; raise Supersampling to 5 for detail far below a pixel"
             ),
             {"method": "quad", "supersampling": 4, "detail_tolerance": 0.0},
         ),

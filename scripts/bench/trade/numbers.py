@@ -67,7 +67,7 @@ def number_lines(renderer: Renderer, options) -> Iterator[list]:
         for row in rows:
             flips = {kind: mean_flip(row.color, color) for kind, color in exact.colors.items()}
             yield [
-                f"{name} (exact to {converged})" if row is rows[0] else "", row.choice.name,
+                f"{name} (exact pictures good to {converged})" if row is rows[0] else "", row.choice.name,
                 f"{row.seconds / rows[0].seconds:.2f}", f"{row.least / rows[0].least:.2f}",
                 f"{flips['gaussian']:.4f}", f"{flips['box']:.4f}", f"{mean_flip(row.color, rows[0].color):.4f}",
                 f"{row.splats:,}", f"{row.bytes / 2**20:.1f}",

@@ -1001,11 +1001,11 @@ GERMAN = {
         "Der Anteil jedes Pixels, den Flächen bedecken, unabhängig vom Hintergrund"
     ),
     (
-        "The sharpest, for stills and for pictures that are scaled down later. Takes about twice as long as "
-        "Preview; raise Supersampling to 5 for detail far below a pixel"
+        "The sharpest, for stills and for pictures that are scaled down later. Takes two to three times as long "
+        "as Preview; raise Supersampling to 5 for detail far below a pixel"
     ): (
-        "Am schärfsten, für Standbilder und für Bilder, die später verkleinert werden. Dauert etwa doppelt so"
-        " lange wie die Vorschau; für Details weit unter einem Pixel Supersampling auf 5 erhöhen"
+        "Am schärfsten, für Standbilder und für Bilder, die später verkleinert werden. Dauert zwei- bis "
+        "dreimal so lange wie die Vorschau; für Details weit unter einem Pixel Supersampling auf 5 erhöhen"
     ),
     "The side to which estimated normals point; existing normals are kept": (
         "Die Seite, zu der geschätzte Normalen zeigen; vorhandene Normalen bleiben"
