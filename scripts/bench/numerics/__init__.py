@@ -24,6 +24,7 @@ matplotlib.use("Agg")
 from matplotlib import pyplot
 
 from bench.numerics import sweeps
+from bench.trade.plots import COLORS
 from measuring.drawing import holes
 from splat_addon.reference import render_exact
 from splat_addon.reference.metrics import psnr
@@ -116,20 +117,22 @@ def measure(panel: Panel, renderers: dict, most: int) -> dict[str, list[dict]]:
 
 def plot_panels(panels: tuple[Panel, ...], results: dict):
     """Panels side by side, with one line per method; crosses mark empty pixels."""
-    size = (4.5 * len(panels), 3)
+    size = (4.5 * len(panels) + 1.8, 3)
     figure, axes = pyplot.subplots(1, len(panels), figsize=size, sharey=True, layout="constrained")
     for axis, panel in zip(axes, panels):
         for method, found in results[panel.name].items():
             x, y = [f["x"] for f in found], [f["dB"] for f in found]
-            (line,) = axis.plot(x, y, marker="o", markersize=3, label=method)
+            axis.plot(x, y, marker="o", markersize=3, label=method, color=COLORS[method])
             y = [f["dB"] if f["empty"] else math.nan for f in found]
-            axis.plot(x, y, "x", color=line.get_color(), markersize=8)
+            axis.plot(x, y, "x", color=COLORS[method], markersize=8)
         if panel.least:
             axis.axhline(panel.least, color="gray", linestyle="--", linewidth=1, label="quads, held by tests")
         axis.set(xscale="log" if panel.is_log else "linear", xlabel=panel.x, ylim=(0, EQUAL + 10))
         axis.grid(alpha=0.3)
     axes[0].set_ylabel("PSNR, dB")
-    axes[-1].legend(fontsize=7)
+    # Beside the panels, because inside one it would hide lines.
+    known = {label: handle for axis in axes for handle, label in zip(*axis.get_legend_handles_labels())}
+    figure.legend(known.values(), known, loc="outside right center", fontsize=8)
     return figure
 
 
