@@ -714,10 +714,10 @@ GERMAN = {
     "Motion Blur": "Bewegungsunschärfe",
     "Neighbours": "Nachbarn",
     (
-        "No filter: the fastest, and with many samples the sharpest (View-independent object-space surface "
+        "No filter: fast, and with many samples the sharpest (View-independent object-space surface "
         "splatting, sections 4.1 to 4.3)"
     ): (
-        "Kein Filter: am schnellsten und mit vielen Samples am schärfsten (View-independent object-space "
+        "Kein Filter: schnell und mit vielen Samples am schärfsten (View-independent object-space "
         "surface splatting, Abschnitte 4.1 bis 4.3)"
     ),
     "Nodes": "Nodes",

@@ -7,7 +7,7 @@ METHOD = Method(
     "quad",
     label="Quads",
     paper="View-independent object-space surface splatting, sections 4.1 to 4.3",
-    summary="No filter: the fastest, and with many samples the sharpest",
+    summary="No filter: fast, and with many samples the sharpest",
     rasterizer="object_space",
     pixel_variance=1 / 12,
 )
