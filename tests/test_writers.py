@@ -30,6 +30,8 @@ ALLOWED = {
     "scripts/bench/reflecting/__init__.py": {"save": "to the stream of `whole_file`"},
     "scripts/bench/scanned/others.py": {"savez": "scratch in a temporary folder"},
     "scripts/bench/streaming.py": {"unlink": "its own file, after the last measurement"},
+    "scripts/bench/viewers/__init__.py": {"savez": "scratch in a temporary folder"},
+    "scripts/bench/viewers/measured.py": {"savez": "scratch in a temporary folder"},
     "scripts/build.py": {
         "ZipFile": "scratch in a temporary folder",
         "copyfile": "scratch in a temporary folder",
@@ -49,6 +51,7 @@ ALLOWED = {
         "write_text": "stamps, which are read back before they are believed",
     },
     "scripts/measuring/blender_scene.py": {"write_still": "a picture that is not used"},
+    "scripts/measuring/reading.py": {"animation": "scratch in a temporary folder"},
     "scripts/measuring/report.py": {"save": "to memory", "savefig": "to memory"},
     "scripts/testing/program.py": {
         "rmtree": "packages that are not whole",

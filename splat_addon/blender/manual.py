@@ -24,8 +24,8 @@ _LIGHT = "guide.md#light-materials-and-cameras"
 PAGES = (
     (f"{_SETTINGS}.method", "choose.md#method"),
     (f"{_SETTINGS}.as_printed", "choose.md#method"),
-    (f"{_SETTINGS}.storage", "choose.md#memory"),
-    (f"{_SETTINGS}.accumulation", "choose.md#memory"),
+    (f"{_SETTINGS}.storage", "guide.md#render"),
+    (f"{_SETTINGS}.accumulation", "guide.md#render"),
     (f"{_SETTINGS}.mesh_*", "choose.md#density"),
     (f"{_SETTINGS}.render_meshes", _CONVERT),
     (f"{_SETTINGS}.aim", _AIM),
@@ -46,7 +46,6 @@ PAGES = (
     ("bpy.types.surfelsource*", _CONVERT),
     ("bpy.types.surfelseries*", _POINTS),
     ("bpy.types.surfelrecord*", _CONVERT),
-    ("bpy.types.surfelpreferences.most_megabytes", "choose.md#memory"),
     ("bpy.types.surfelpreferences.stream_megabytes", _FILES),
     ("bpy.types.surfelpreferences*", _CONVERT),
     ("bpy.ops.object.surfels_from_mesh*", _CONVERT),

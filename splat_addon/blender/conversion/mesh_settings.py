@@ -322,8 +322,8 @@ class SurfelConversionSettings(ConversionProperties, bpy.types.PropertyGroup):
     error: FloatProperty(
         name="Error",
         description=(
-            "How far surfels look from the mesh, as the mean perceived difference (FLIP) over what an object covers, "
-            "and the density that this takes. Measured on five models less than 100 pixels tall; larger ones are closer"
+            "How far surfels look from the mesh, as the mean perceived difference over what an object covers, "
+            "and the density that this takes. Larger models are closer than it says"
         ),
         min=LEAST_ERROR,
         max=LARGEST_ERROR,

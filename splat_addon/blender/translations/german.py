@@ -1260,12 +1260,12 @@ GERMAN = {
         "Fehler bis {worst}, wo Einzelheiten feiner als ein Pixel sind"
     ),
     (
-        "How far surfels look from the mesh, as the mean perceived difference (FLIP) over what an object covers, and "
-        "the density that this takes. Measured on five models less than 100 pixels tall; larger ones are closer"
+        "How far surfels look from the mesh, as the mean perceived difference over what an object covers, and "
+        "the density that this takes. Larger models are closer than it says"
     ): (
-        "Wie sehr Surfels anders aussehen als das Mesh, als mittlerer wahrgenommener Unterschied (FLIP) über das, was "
-        "ein Objekt bedeckt, und die Dichte, die das braucht. Gemessen an fünf Modellen, die weniger als 100 Pixel "
-        "hoch sind; größere sind näher"
+        "Wie sehr Surfels anders aussehen als das Mesh, als mittlerer wahrgenommener Unterschied über das, was "
+        "ein Objekt bedeckt, und die Dichte, die das braucht. Größere Modelle sind "
+        "näher, als sie sagt"
     ),
     "Edges": "Kanten",
     "Files": "Dateien",
