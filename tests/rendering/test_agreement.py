@@ -351,20 +351,22 @@ def mirrored(scene, camera):
     floor = replace(scene.polygons[0], materials=(Material(roughness=0.3),))
     ball = scenes.round_polygons(12)
     placed = [floor]
-    for number, roughness in enumerate((0.0, 0.15, 0.35, 0.7)):
-        matrix = np.diag((0.3, 0.3, 0.3, 1.0))
-        matrix[:3, 3] = number * 0.5 - 0.75, -0.2, 0.5
+    for number, roughness in enumerate((0.0, 0.35)):
+        matrix = np.diag((0.45, 0.45, 0.45, 1.0))
+        matrix[:3, 3] = number - 0.5, -0.2, 0.5
         placed.append(PolygonInstance(ball, matrix, materials=(Material(roughness=roughness, metallic=1.0),)))
     return replace(scene, polygons=placed, world=(0.3, 0.4, 0.5)), camera
 
 
-def glassy(scene, camera):
+def glassy(scene, camera, balls=4):
     """Balls of clear and frosted glass, as polygons and as surfels, before a wall."""
     clear = Material(roughness=0.0, finish=Finish(transmission=1.0))
     frosted = Material(roughness=0.4, finish=Finish(transmission=0.8, coat=0.3))
     shapes = scenes.round_polygons(12), scenes.sphere(2000)[0].surfels[0].surfels
     placed = []
     for number, (shape, material) in enumerate(zip(shapes * 2, (clear, frosted, frosted, clear), strict=True)):
+        if number == balls:
+            break
         matrix = np.diag((0.4, 0.4, 0.4, 1.0))
         matrix[:3, 3] = 0.9 * (number % 2) - 0.45, -0.6, 0.9 * (number // 2) - 0.2
         placed.append((PolygonInstance, Instance)[number % 2](shape, matrix, materials=(material,)))
@@ -389,7 +391,7 @@ SPECIAL = {
     "styles": lambda: with_styles(*scenes.polygons(count=COUNT, size=SIZE)),
     "nothing": lambda: of_nothing(*scenes.torus(count=100, size=SIZE)),
     "cards": lambda: with_cards(*scenes.torus(count=COUNT, size=SIZE)),
-    "glass": lambda: glassy(*scenes.polygons(count=COUNT, size=SIZE)),
+    "glass": lambda: glassy(*scenes.polygons(count=COUNT, size=SIZE), balls=2),
     "glass_shadows": lambda: glassy(*shadowed(*scenes.polygons(count=COUNT, size=SIZE))),
     "mirrored": lambda: mirrored(*scenes.polygons(count=COUNT, size=SIZE)),
 }
