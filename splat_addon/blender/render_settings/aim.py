@@ -16,7 +16,7 @@ class AimProperties:
 
     aim: EnumProperty(
         name="Aim",
-        description="What decides method and number of samples of a final render",
+        description="What decides method, samples and detail of a final render",
         items=(
             (SETTINGS, "Settings", "The settings below"),
             (

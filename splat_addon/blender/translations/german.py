@@ -73,8 +73,8 @@ GERMAN = {
     ),
     "Time Budget": "Zeitbudget",
     "Turns": "Durchgänge",
-    "What decides method and number of samples of a final render": (
-        "Was Methode und Anzahl der Samples eines Endrenderns bestimmt"
+    "What decides method, samples and detail of a final render": (
+        "Was Methode, Samples und Detail eines Endrenderns bestimmt"
     ),
     "Which row of the table": "Welche Zeile der Tabelle",
     "Measure This Scene": "Diese Szene messen",
