@@ -8,7 +8,7 @@ import pytest
 
 from splat_addon.blender import commands, translations
 from splat_addon.blender.spoken import said
-from splat_addon.blender.translations.german import GERMAN
+from splat_addon.blender.translations.german import AREAS, GERMAN
 from splat_addon.blender.translations.messages import DEFAULT, OPERATOR
 
 
@@ -33,6 +33,11 @@ def test_every_text_is_there_in_german_and_no_other(interface_texts):
     texts = {text for _, text in interface_texts}
     assert {"missing": texts - set(GERMAN), "left over": set(GERMAN) - texts} == {"missing": set(), "left over": set()}
     assert all(said.strip() and not said.endswith(".") for said in GERMAN.values())
+
+
+def test_each_text_is_in_one_area_in_alphabetical_order():
+    assert sum(len(area.TEXTS) for area in AREAS) == len(GERMAN)
+    assert all(list(area.TEXTS) == sorted(area.TEXTS, key=lambda text: (text.casefold(), text)) for area in AREAS)
 
 
 def test_german_has_the_figures_of_the_english():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The interface in other languages: one file per language, registered with Blender, which translates while drawing.
+"""The interface in other languages: a folder per language, registered with Blender, which translates while drawing.
 
 `blender --command surfels template FILE` writes a template for a new language.
 """
