@@ -283,33 +283,117 @@ void glass_prepare(inout Shaded s) {
   glass_material = s.material;
 }
 
+#part shaded_sample, glass_shadows
+void glass_shadows_prepare(inout Shaded s) {
+  glass_around = frame.glass_turn + 0.5 * GLASS_PI * float((s.texel.x & 1) + 2 * (s.texel.y & 1));
+}
+
 #part lights, glass_shadows
 #include "lib/glass_surfaces.glsl"
 
-const int GLASS_IN_THE_WAY = 8;
-// Smooth glass that bends light hides a lamp without a size, as in Cycles: no ray finds it.
-const float CLEAR_IOR = 1.001, CLEAR_ROUGHNESS = 0.05;
+const float GLASS_PI = 3.14159265358979, GLASS_GOLDEN_TURN = 2.39996323;
+// What bends no light.
+const float CLEAR_IOR = 1.001;
+// Cycles finds lamps through glass by chance, and therefore takes it for rough where a matt surface is lit (its Filter
+// Glossy): GGX alpha of light at 45 degrees. Of light that it spreads so it loses a share at each crossing.
+const float LAMP_ALPHA = 0.44, LAMP_LOSS = 0.06;
+// Rays that are followed towards a lamp, to either side of it by the tangents of a lobe of this width (GGX).
+const int LAMP_TAPS = 6, LAMP_CROSSINGS = 8;
+const float LAMP_SPREAD = 0.35;
+// The most that a ray counts, as a share of the lamp's light.
+const float LAMP_MOST = 8.0;
 
-// What glass leaves of a light, straight through it. Successive samples look towards other places of the lamp.
+float glass_around;  // by which the rays are turned, radians
+
+// Of a lobe, by the square of the tangent of an angle and that of its width.
+float lamp_lobe(float slope2, float width2) {
+  float cosine2 = 1.0 / (1.0 + slope2), sum = slope2 + width2;
+  return width2 / (GLASS_PI * sum * sum * cosine2 * sqrt(cosine2));
+}
+
+// What a crossing keeps of what is not reflected: the roughness that is not the glass's own loses light (GGX, Smith).
+float lamp_kept(float cosine, float roughness) {
+  float own = min(roughness * roughness / LAMP_ALPHA, 1.0), cosine2 = max(cosine * cosine, 1e-4);
+  float masking = 2.0 / (1.0 + sqrt(1.0 + LAMP_ALPHA * LAMP_ALPHA * (1.0 - cosine2) / cosine2));
+  return mix(masking * (1.0 - LAMP_LOSS), 1.0, own * own);
+}
+
+// What glass leaves of a light: of the ray straight to it, if nothing bends that, and of those that are bent towards it.
+// Successive samples look towards other places of the lamp.
 void glass_hide(inout Incident here, LightTexels of, vec3 position, vec3 normal) {
-  if (!(texelFetch(lights, ivec2(6, of.number), 0).w > 0.0) || !(dot(here.irradiance, vec3(1.0)) > 0.0)) return;
+  float facing = dot(normal, here.to_light);
+  bool counts = texelFetch(lights, ivec2(6, of.number), 0).w > 0.0 && dot(here.irradiance, vec3(1.0)) > 0.0;
+  if (!counts || !(facing > 0.0)) return;
   vec2 aside = frame.glass_aside * vec2(cos(frame.glass_turn), sin(frame.glass_turn));
-  vec3 toward = here.middle + here.half_u * aside.x + here.half_v * aside.y;
-  vec3 from = (frame.to_glass * vec4(position, 1.0)).xyz, way = mat3(frame.to_glass) * toward, left = vec3(1.0);
-  vec3 along = normalize(way);
-  float reach = of.place.w > 0.5 ? length(way) : FAR, side = -1.0;
-  bool is_point = !(of.strength.w > 0.0);
-  for (int i = 0; i < GLASS_IN_THE_WAY; i++) {
+  mat3 turn = mat3(frame.to_glass);
+  vec3 toward = turn * (here.middle + here.half_u * aside.x + here.half_v * aside.y), up = normalize(turn * normal);
+  vec3 start = (frame.to_glass * vec4(position, 1.0)).xyz, straight = normalize(toward), lamp = start + toward;
+  vec3 u = facing_axis(straight), v = cross(straight, u), from = start, along = straight;
+  bool is_far = !(of.place.w > 0.5), is_bent = false;
+  float far = length(toward), side = -1.0, spread2 = 0.0, spread = LAMP_SPREAD, weight = 1.0, crossed = 0.5 * far;
+  vec3 share = vec3(1.0), sum = vec3(0.0);
+  int tap = -1, crossings = 0;  // the first ray is the straight one
+  for (int i = 0; i < (LAMP_TAPS + 1) * (LAMP_CROSSINGS + 1) && tap < LAMP_TAPS; i++) {
     GlassMet met = met_glass(from, along, side);
-    if (met.away >= reach) break;
-    from += along * met.away;
-    reach -= met.away;
-    side = -side;
-    if (!met.casts) continue;
-    float cosine = abs(dot(met.normal, along)) * inversesqrt(max(dot(met.normal, met.normal), 1e-20));
-    if (is_point && met.ior > CLEAR_IOR && met.roughness < CLEAR_ROUGHNESS) left = vec3(0.0);
-    left *= (1.0 - fresnel_of(cosine, met.ior)) * met.tint;
+    vec3 rest = lamp - from;
+    bool goes_on = met.away < (is_far ? FAR : length(rest)) && crossings < LAMP_CROSSINGS;
+    if (goes_on) {
+      from += along * met.away;
+      crossings++;
+      if (!met.casts) {
+        side = -side;
+        continue;
+      }
+      vec3 against = met.normal * inversesqrt(max(dot(met.normal, met.normal), 1e-20));
+      if (dot(against, along) > 0.0) against = -against;
+      float ratio = side > 0.0 ? 1.0 / met.ior : met.ior, cosine = clamp(-dot(against, along), 0.0, 1.0);
+      if (!(met.ior > CLEAR_IOR)) {
+        share *= met.tint;
+        side = -side;
+        continue;
+      }
+      is_bent = true;
+      if (tap < 0) {
+        crossed = distance(from, start);
+        side = -side;
+        continue;
+      }
+      float reflected = fresnel_of(cosine, ratio), bends = LAMP_ALPHA * (met.ior - 1.0);
+      if (reflected >= 1.0) {
+        along = reflect(along, against);
+        spread2 += 4.0 * LAMP_ALPHA * LAMP_ALPHA;
+        continue;
+      }
+      along = bent(along, against, cosine, ratio);
+      share *= (1.0 - reflected) * lamp_kept(cosine, met.roughness) * met.tint;
+      spread2 = spread2 / (ratio * ratio) + bends * bends / (side > 0.0 ? 1.0 : ratio * ratio);
+      side = -side;
+      continue;
+    }
+    // the end of a ray
+    if (tap < 0) {
+      if (!is_bent) sum += share;
+      if (!is_far) spread *= clamp(1.0 - crossed / far, 0.01, 1.0);
+    } else if (is_bent && side < 0.0 && crossings < LAMP_CROSSINGS) {
+      vec3 there = is_far ? straight : normalize(rest);
+      float cosine = dot(along, there), nearer = is_far ? 1.0 : far * far / dot(rest, rest);
+      if (cosine > 0.0) {
+        float found = lamp_lobe(1.0 / (cosine * cosine) - 1.0, max(spread2, 1e-6));
+        sum += min(weight * found * nearer, LAMP_MOST) / float(LAMP_TAPS) * share;
+      }
+    }
+    tap++;
+    float within = (float(tap) + fract(0.5 + frame.glass_aside * frame.glass_aside)) / float(LAMP_TAPS);
+    float slope2 = spread * spread * within / max(1.0 - within, 1e-3), angle = glass_around + float(tap) * GLASS_GOLDEN_TURN;
+    along = normalize(straight + sqrt(slope2) * (u * cos(angle) + v * sin(angle)));
+    weight = max(dot(along, up), 0.0) / (facing * lamp_lobe(slope2, spread * spread));
+    from = start;
+    share = vec3(1.0);
+    spread2 = 0.0;
+    crossings = 0;
+    side = -1.0;
+    is_bent = false;
   }
-  here.irradiance *= left;
-  here.radiance *= left;
+  here.irradiance *= sum;
+  here.radiance *= sum;
 }

@@ -8,7 +8,7 @@ import pytest
 
 from splat_addon.reference import extremes, scenes
 from splat_addon.reference.brdf import dot, specular_albedo, unit
-from splat_addon.reference.glass import fresnel, met_first, through_glass
+from splat_addon.reference.glass import fresnel, lamp_share, met_first, through_glass
 from splat_addon.rendering import (
     Camera,
     Finish,
@@ -186,31 +186,54 @@ def test_a_translucent_sheet_is_lit_by_what_is_behind_it(kind, casts, render):
         assert ours.reshape(-1, 3) == pytest.approx(np.tile(np.array(color[:3]) * share, (256, 1)), rel=0.02)
 
 
-@pytest.mark.parametrize(
-    ("kind", "size", "ior", "passes"),
-    [("polygons", 0.02, IOR, True), ("surfels", 0.0, IOR, False), ("surfels", 0.0, 1.0, True)],
-)
-def test_light_through_a_pane_is_tinted_by_both_sides(kind, size, ior, passes, render):
-    """A lamp without a size is not found through glass that bends light, as in Cycles."""
-    pane = Material(roughness=0.0, ior=ior, finish=Finish(transmission=1.0, tint_power=1.0))
+BELOW = Camera.perspective(look_at((0, -0.5, 0.5), (0, 0, 0)), 0.3, (16, 16), near=0.01, far=50)
+FLOOR = make_polygons([(-9, -9, 0), (9, -9, 0), (9, 9, 0), (-9, 9, 0)], [(0, 1, 2), (0, 2, 3)], color=(1, 1, 1, 1))
+FLOOR = PolygonInstance(FLOOR, materials=(Material(roughness=1.0, ior=1.0),))
+
+
+def pane(kind, ior):
+    """Two sides of a pane above the floor."""
+    of = Material(roughness=0.0, ior=ior, finish=Finish(transmission=1.0, tint_power=1.0))
     sides = [((0, 0, 1.0), 1), ((0, 0, 0.9), -1)]
     if kind == "polygons":
         corners = np.array([(-3, -3, 0), (3, -3, 0), (3, 3, 0), (-3, 3, 0)])
         turned = {1: [(0, 1, 2), (0, 2, 3)], -1: [(0, 2, 1), (0, 3, 2)]}
         made = [make_polygons(corners + at, turned[up], color=(*TINT, 1)) for at, up in sides]
-        above = {"polygons": [PolygonInstance(one, materials=(pane,)) for one in made]}
-    else:
-        x, y = (axis.ravel() * 0.2 for axis in np.mgrid[-15:16, -15:16])
-        flat = np.stack([x, y, 0 * x], axis=1)
-        made = [extremes.discs(flat + at, (0.25, 0, 0), (0, 0.25 * up, 0)) for at, up in sides]
-        made = [replace(one, colors=np.tile((*TINT, 1), (len(x), 1))) for one in made]
-        above = {"polygons": [], "surfels": [Instance(one, materials=(pane,)) for one in made]}
-    floor = make_polygons([(-9, -9, 0), (9, -9, 0), (9, 9, 0), (-9, 9, 0)], [(0, 1, 2), (0, 2, 3)], color=(1, 1, 1, 1))
-    above["polygons"].append(PolygonInstance(floor, materials=(Material(roughness=1.0, ior=1.0),)))
-    sun = Light("sun", energy=np.pi, direction=(0, 0, -1), size=size, casts_shadow=True)
-    below = Camera.perspective(look_at((0, -0.5, 0.5), (0, 0, 0)), 0.3, (16, 16), near=0.01, far=50)
-    ours = render(Scene(**above, lights=(sun,)), below, SETTINGS).color[..., :3].reshape(-1, 3)
-    kept = (1 - ((ior - 1) / (ior + 1)) ** 2) ** 2 * TINT**2
-    assert ours == pytest.approx(np.tile(kept * passes, (256, 1)), abs=0.01)
-    if kind == "polygons":
-        assert render(Scene(**above, lights=(sun,)), below, Settings(method="quad")).color[..., :3].max() < 0.01
+        return {"polygons": [FLOOR, *(PolygonInstance(one, materials=(of,)) for one in made)]}
+    x, y = (axis.ravel() * 0.2 for axis in np.mgrid[-15:16, -15:16])
+    flat = np.stack([x, y, 0 * x], axis=1)
+    made = [extremes.discs(flat + at, (0.25, 0, 0), (0, 0.25 * up, 0)) for at, up in sides]
+    made = [replace(one, colors=np.tile((*TINT, 1), (len(x), 1))) for one in made]
+    return {"polygons": [FLOOR], "surfels": [Instance(one, materials=(of,)) for one in made]}
+
+
+@pytest.mark.parametrize("kind", ["polygons", "surfels"])
+def test_what_bends_no_light_tints_it_at_both_sides(kind, render):
+    sun = Light("sun", energy=np.pi, direction=(0, 0, -1), casts_shadow=True)
+    ours = render(Scene(**pane(kind, 1.0), lights=(sun,)), BELOW, SETTINGS).color[..., :3].reshape(-1, 3)
+    assert ours == pytest.approx(np.tile(TINT**2, (256, 1)), abs=0.01)
+
+
+SUN = Light("sun", energy=np.pi, direction=(0.3, 0.2, -1), casts_shadow=True)
+BULB = Light("point", energy=40 * np.pi**2, position=(0.3, 0.4, 2.0), casts_shadow=True)
+
+
+@pytest.mark.parametrize(("kind", "lamp"), [("polygons", SUN), ("surfels", SUN), ("polygons", BULB)])
+def test_lamps_shine_through_a_pane_as_in_the_twin(kind, lamp, render):
+    found = Scene(**pane(kind, IOR), lights=(lamp,))
+    ours, bare = (
+        render(one, BELOW, SETTINGS).color[..., :3].reshape(-1, 3)
+        for one in (found, replace(found, surfels=(), polygons=(FLOOR,)))
+    )
+    eye = BELOW.matrix_world[:3, 3]
+    along = BELOW.points_at(np.ones((16, 16))).reshape(-1, 3) - eye
+    places = eye - along * (eye[2] / along[:, 2:])
+    to_lamp = np.tile(-np.array(lamp.direction), (256, 1)) if lamp is SUN else lamp.position - places
+    rows, columns = np.mgrid[:16, :16].reshape(2, -1)
+    turn, surfaces = np.pi / 2 * (columns % 2 + 2 * (rows % 2)), surfaces_of(found.table)
+    up = np.tile((0.0, 0, 1), (256, 1))
+    some = slice(None, None, 13)
+    share = lamp_share(surfaces, (places - surfaces.origin)[some], up[some], to_lamp[some], lamp is SUN, turn[some])
+    assert 0.1 < share.min() < share.max() < 0.9
+    assert ours[some] == pytest.approx(share * bare[some], abs=0.02)
+    assert render(found, BELOW, Settings(method="quad")).color[..., :3].max() < 0.01
