@@ -130,7 +130,7 @@ RENDERING_FLOORS = (
     {"detail", "probes", "bounced"},
     {"culling", "upload"},
     PLAN_AND_FEATURES,
-    {"statistics"},
+    {"statistics", "sample_sums"},
     {"renderer"},
     {"viewport"},
     {"__init__"},

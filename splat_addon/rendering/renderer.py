@@ -13,7 +13,7 @@ from weakref import WeakSet
 import numpy as np
 
 from ..surfels import Surfels
-from .assembly.accumulation import around_samples, mean_frame, sample_blocks, sample_camera
+from .assembly.accumulation import Summed, around_samples, mean_frame, sample_blocks, sample_camera
 from .assembly.near_and_far import NearAndFar
 from .assembly.panorama_faces import panorama_frame
 from .bounced.kept import Bounced
@@ -25,7 +25,6 @@ from .device.interface import Target, texture_bytes
 from .device.interface import Texture as DeviceTexture
 from .features import bounced_light, glass, mirrors, reflections
 from .features.outputs import check_samplers
-from .features.sample_sum import SUM
 from .frame import OUTPUTS, Frame
 from .identity import Identified, nearer
 from .passes.decisions import numbered
@@ -40,6 +39,7 @@ from .plan.tile import TileContext, texture_key
 from .probes.drawing import Probes
 from .probes.pictures import ProbePictures
 from .read_back import assembled, background, background_pixel, mended, positions_of, read_tile
+from .sample_sums import SampleSums, may_add_up
 from .scene import Scene
 from .scene.camera import Camera
 from .scene.glass_surfaces import GlassSurfaces
@@ -83,6 +83,7 @@ class Renderer:
         self.near_and_far = NearAndFar()
         self.probes = Probes()
         self.bounced = Bounced()
+        self._sums = SampleSums(self.resources)
         self._refining: tuple[Scene, tuple, Shared] | None = None
         self._drawn: WeakSet[Surfels] = WeakSet()
 
@@ -128,12 +129,12 @@ class Renderer:
         else:
             turns = (progress and _share(progress, turn, settings.samples) for turn in range(settings.samples))
         read = ((self._read(scene, camera, settings, progress), camera) for scene, camera in moments)
-        frames = (
-            frame
+        added = (
+            summed
             for block, (scene, camera) in zip(blocks, read, strict=True)
-            for frame in self._samples(scene, camera, settings, block, turns, part, is_repeatable)
+            for summed in self._samples(scene, camera, settings, block, turns, part, is_repeatable)
         )
-        return mean_frame(frames) if settings.samples > 1 else next(frames)
+        return mean_frame(added) if settings.samples > 1 else next(added).frame
 
     def _read(self, scene, camera, settings, progress: Progress | None) -> Scene:
         """The scene with everything that its streamed instances need for this view."""
@@ -146,16 +147,50 @@ class Renderer:
 
     def _samples(
         self, scene, camera, settings, numbers: list[int], turns: Iterator, part: Tile | None, is_repeatable: bool
-    ) -> Iterator[Frame]:
-        """The pictures of these samples."""
+    ) -> Iterator[Summed]:
+        """The pictures of these samples, or their sum, if they can be added up on the device."""
         if is_repeatable:
             forget_before(scene)
-
-        # through a lens, each is from a place of its own
-        repeated = 1 if isinstance(camera, Camera) and camera.lens else len(numbers)
-        planned = {}
+        has_room = self.device.most_bytes is None and may_add_up(camera, part[2:] if part else camera.size, settings)
+        is_added_up = has_room and len(numbers) > 1
+        prepared = self._plans(scene, camera, settings, len(numbers), is_repeatable, is_added_up)
 
         def draw(moved: Camera, of: Viewers, settings: Settings, told: Progress | None, part=None) -> Frame:
+            return self._frame(prepared(moved, of, settings, part), moved, told, part)
+
+        def seen(number: int) -> tuple[Camera, Viewers]:
+            moved = sample_camera(camera, number, settings.samples)
+            return moved, viewers(camera, moved)
+
+        def drawn(number: int) -> Summed:
+            if isinstance(camera, Panorama):
+                cropped = camera.cropped(*part) if part else camera
+                return Summed(panorama_frame(cropped, number, settings, draw, next(turns)))
+            return Summed(draw(*seen(number), settings, next(turns), part))
+
+        if is_added_up and prepared(*seen(numbers[0]), settings, part).plan.passes:
+            views = ((seen(number), told) for number, told in zip(numbers, turns, strict=False))
+            of_samples = ((prepared(moved, of, settings, part), moved, told) for (moved, of), told in views)
+            yield self._completed(scene, self._added_up(of_samples, settings))
+            return
+        for number in numbers:
+            summed = drawn(number)
+            yield self._completed(scene, summed) if number == numbers[-1] else summed
+
+    def _completed(self, scene: Scene, summed: Summed) -> Summed:
+        """The last picture of a scene."""
+        self._was_drawn(scene)
+        summed.frame.stats["texture_bytes"] = texture_bytes(self.device.textures)
+        return summed
+
+    def _plans(self, scene: Scene, camera, settings: Settings, samples: int, is_repeatable: bool, is_added_up: bool):
+        """A function of a sample's camera, the cameras that its shadow maps serve, settings and a part of the picture,
+        that plans what samples share once."""
+        # through a lens, each is from a place of its own
+        repeated = 1 if isinstance(camera, Camera) and camera.lens else samples
+        planned = {}
+
+        def prepared(moved: Camera, of: Viewers, settings: Settings, part: Tile | None) -> Shared:
             # through a lens, each sample has shadow maps of its own
             key = (*_seen(of.sun), settings, part)
             if key not in planned:
@@ -169,22 +204,33 @@ class Renderer:
                     is_repeatable=is_repeatable,
                     viewers=of,
                     part=part,
-                    samples=len(numbers),
+                    samples=samples,
                     around=around_samples(moved, settings.samples),
+                    is_added_up=is_added_up,
                 )
-            return self._frame(planned[key], moved, told, part)
+            return planned[key]
 
-        for number in numbers:
-            if isinstance(camera, Panorama):
-                seen = camera.cropped(*part) if part else camera
-                frame = panorama_frame(seen, number, settings, draw, next(turns))
-            else:
-                moved = sample_camera(camera, number, settings.samples)
-                frame = draw(moved, viewers(camera, moved), settings, next(turns), part)
-            if number == numbers[-1]:
-                self._was_drawn(scene)
-                frame.stats["texture_bytes"] = texture_bytes(self.device.textures)
-            yield frame
+        return prepared
+
+    def _added_up(self, samples: Iterable[tuple[Shared, Camera, Progress | None]], settings: Settings) -> Summed:
+        """The sum of samples of one scene."""
+        started, count, stats = perf_counter(), 0, None
+        try:
+            for shared, camera, progress in samples:
+                own = new_stats(self.device, shared.plan, self.streamed)
+                own["passes"] = stats["passes"] if stats else {}
+                if not count:
+                    self._sums.begin(shared.plan)
+                for _, target in self._tiles(shared, camera, own, progress):
+                    self.device.finish(target)
+                self.device.restore()
+                count, stats, plan = count + 1, own, shared.plan
+            arrays, stats["pixels_not_finite"] = self._sums.read(plan, settings)
+        finally:
+            self._sums.end()
+            self.device.restore()
+        stats["milliseconds"] = 1e3 * (perf_counter() - started)
+        return Summed(Frame(**{name: arrays.get(name) for name in OUTPUTS}, stats=stats), count)
 
     def _planned(
         self,
@@ -283,6 +329,7 @@ class Renderer:
         """
         self._check(settings)
         self._refining = None
+        self._sums.end()
         shared = self._planned(scene, camera, settings, is_draft=settings.samples > 1)
         frame_plan = shared.plan
         if not frame_plan.passes:
@@ -318,7 +365,7 @@ class Renderer:
             return False
         with _restored(self.device):
             if is_first:
-                self.device.target([self._sum(moved.size)]).clear(color=0.0)
+                self._sums.begin(frame_plan)
             for drawn in self._slices(shared, moved, new_stats(self.device, frame_plan, self.streamed), None):
                 if isinstance(drawn, Pause) and len(frame_plan.tiles) == 1:
                     yield drawn
@@ -336,14 +383,13 @@ class Renderer:
 
     def shown_sum(self, size: tuple[int, int], samples: int) -> Shown:
         """The mean of the samples added so far."""
-        return Shown((0, 0, *size), self._sum(size), (0, 0, *size), 1.0 / samples)
-
-    def _sum(self, size: tuple[int, int]) -> DeviceTexture:
-        return self.resources.texture((SUM.name, *size, SUM.format, 0))
+        texture = self._sums.shown(self._refining[2].plan)
+        return Shown((0, 0, *size), texture, (0, 0, *size), 1.0 / samples)
 
     def release(self) -> None:
         """Free everything on the device."""
         self._refining = None
+        self._sums.end()
         self.probes.forget()
         self.bounced.forget()
         self.resources.release()

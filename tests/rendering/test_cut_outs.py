@@ -59,7 +59,7 @@ def floor(color=(*RED, 1.0)) -> PolygonInstance:
 
 def averaged(render, scene, settings, count, camera=CAMERA):
     frames = (render(scene, accumulation.sample_camera(camera, number, count), settings) for number in range(count))
-    return accumulation.mean_frame(frames)
+    return accumulation.mean_frame(map(accumulation.Summed, frames))
 
 
 @pytest.mark.parametrize("method", ["quad", "mip"])

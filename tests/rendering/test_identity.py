@@ -20,7 +20,7 @@ from splat_addon.rendering import (
     Settings,
     plan,
 )
-from splat_addon.rendering.assembly.accumulation import mean_frame
+from splat_addon.rendering.assembly.accumulation import Summed, mean_frame
 from splat_addon.rendering.cryptomatte import added_up, murmur3_32, name_hash
 from splat_addon.rendering.frame import NUMBERED
 from splat_addon.rendering.identity import Identities, nearest_numbers, tile_matte
@@ -246,7 +246,7 @@ def test_samples_add_shares_up_and_keep_the_nearest_index(render):
     np.testing.assert_allclose(total, frame.coverage, atol=1e-6)
     assert set(np.unique(frame.object_index)) == {0, 1, 3, 70_001}
     one = render(three(), CAMERA, settings())
-    mean = mean_frame([one, replace(one, cryptomatte=one.cryptomatte.over(2))])
+    mean = mean_frame(map(Summed, [one, replace(one, cryptomatte=one.cryptomatte.over(2))]))
     np.testing.assert_allclose(mean.cryptomatte.shares, 0.75 * one.cryptomatte.shares)
 
 

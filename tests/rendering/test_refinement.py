@@ -273,8 +273,8 @@ def test_only_a_view_that_refines_keeps_a_sum():
     scene, camera = torus()
     plain, refined = plan(scene, camera, SETTINGS), plan(scene, camera, SETTINGS, is_added_up=True)
     assert refined.passes[:-1] == plain.passes
-    assert set(refined.textures) - set(plain.textures) == {"sample_sum"}
-    assert refined.size(refined.filled["sample_sum"], (7, 7)) == camera.size and "refines" in str(refined)
+    assert set(refined.textures) - set(plain.textures) == {"combined_sum", "odd_sum"}
+    assert refined.size(refined.filled["combined_sum"], (7, 7)) == camera.size and "added up" in str(refined)
 
 
 def test_a_call_may_end_between_compiling_a_program_and_drawing_splats_with_it(on_device):

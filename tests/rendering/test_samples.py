@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """With more samples the picture converges to the box-filtered exact one; a single sample costs nothing extra."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.metrics import psnr
-from splat_addon.rendering import RenderCancelled, Settings
+from splat_addon.rendering import Lens, RenderCancelled, Settings
 from splat_addon.rendering.assembly.accumulation import pixel_offset, sample_points
 
 FLAT = {"method": "quad", "shading": "flat"}
@@ -69,6 +71,21 @@ def test_the_mean_of_samples_is_under_the_filter_of_one(samples, least, render):
     truth = render_exact(scene, camera, Settings(shading="flat"), samples=8, pixel_filter="gaussian")
     shown = render(scene, camera, Settings(method="mip", shading="flat", samples=samples))
     assert psnr(shown.color, truth.color) > least
+
+
+@pytest.mark.parametrize("through_lens", [False, True])
+def test_samples_are_added_up_on_the_device_as_they_are_in_memory(through_lens, render):
+    """Positions are those of the nearest sample, so that each is read back."""
+    scene, camera = scenes.transparent_spheres(count=60, opacity=0.5, size=(16, 12))
+    if through_lens:
+        camera = replace(camera, lens=Lens(0.1, 3.0))
+    outputs = ("color", "depth", "normal", "coverage", "diffuse_color", "emission", "shadow", "overdraw")
+    settings = [Settings(samples=5, outputs=names) for names in (outputs, (*outputs, "position"))]
+    device, memory = (render(scene, camera, own) for own in settings)
+    assert "accumulate" in str(device.stats["plan"]) and "accumulate" not in str(memory.stats["plan"])
+    for name in outputs:
+        np.testing.assert_array_equal(getattr(device, name), getattr(memory, name), err_msg=name)
+    assert device.stats["samples"] == memory.stats["samples"] == 5
 
 
 def test_only_wanted_arrays_are_kept(checker, render):

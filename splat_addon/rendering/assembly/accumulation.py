@@ -15,6 +15,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from functools import lru_cache
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
@@ -112,14 +113,21 @@ def moment_places(samples: int, moments: int) -> list[float]:
     return ((ends[1:] + ends[:-1]) / 2).tolist()
 
 
-def mean_frame(frames: Iterable[Frame]) -> Frame:
+class Summed(NamedTuple):
+    """A frame whose arrays that are means are sums of as many samples; one sample is a sum, too."""
+
+    frame: Frame
+    samples: int = 1
+
+
+def mean_frame(added: Iterable[Summed]) -> Frame:
     """The mean frame: arrays that are means are averaged; depth, position and indices come from the nearest sample;
     times are added up; what could not be read is that of all; other statistics come from the last frame.
 
     Only one sum and one frame are held at a time, in float32: after a thousand frames rounding is about 1e-6.
     """
     count, sums, nearest, matte, milliseconds, passes, unread, stats = 0, {}, {}, None, 0.0, {}, {}, {}
-    for frame in frames:
+    for frame, samples in added:
         for name in _MEANS:
             if (values := getattr(frame, name)) is not None:
                 sums[name] = values + sums[name] if name in sums else values
@@ -132,7 +140,7 @@ def mean_frame(frames: Iterable[Frame]) -> Frame:
             passes[name] = passes.get(name, 0.0) + elapsed
         unread |= dict.fromkeys(frame.stats.get("unread", ()))
         odd = max(stats.get("pixels_not_finite", 0), frame.stats["pixels_not_finite"])
-        count, stats = count + 1, {**frame.stats, "pixels_not_finite": odd}
+        count, stats = count + samples, {**frame.stats, "pixels_not_finite": odd}
     stats = {**stats, "milliseconds": milliseconds, "passes": passes, "unread": tuple(unread), "samples": count}
     means = {name: total / np.float32(count) for name, total in sums.items()}
     arrays = means | nearest | {"cryptomatte": matte and matte.over(count)}

@@ -34,6 +34,7 @@ class Host(StrEnum):
     PEEL_OIT = "peel_oit.frag"
     BACKGROUND = "background.frag"
     ACCUMULATE = "accumulate.frag"
+    NEAREST = "nearest.frag"
 
     @property
     def vertex(self) -> str:

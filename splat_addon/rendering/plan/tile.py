@@ -185,7 +185,7 @@ class TileContext(CutChoice):
     def fill(self, p: Pass, viewport=None) -> Target:
         """Draw over everything that a pass writes, or a part: x, y, width, height of the target."""
         target, program = self.target(p), self.program(p)
-        if p.depth and p.state.get("depth_write"):
+        if p.depth and p.state.get("depth_write") and not p.adds:
             self.clear(target, depth=1.0)
         if viewport is None or min(viewport[2:]) > 0:
             blocks, textures = self.blocks(program), self.textures(p, program)

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence, Set
 from copy import copy
 from functools import partial
 from typing import NamedTuple, TypeVar
@@ -49,7 +49,8 @@ class StoredSurfels(NamedTuple):
 class Resources:
     """Surfels are freed with their last Python reference, textures with the first frame that does not use them, and
     everything by `release`. textures: those that passes wrote last, by key. made_from: of those that following frames
-    may share, what they were made from. arrivals: how often what was on its way has come.
+    may share, what they were made from. held: keys of those that stay while pictures are drawn that do not use them.
+    arrivals: how often what was on its way has come.
 
     loading: brings large sets to the device in slices; a request for one that is on its way then raises `NotYet`. None:
     everything is made when it is first needed.
@@ -63,6 +64,7 @@ class Resources:
         self._atlases = {}
         self.textures = {}
         self.made_from = {}
+        self.held: Set[TextureKey] = frozenset()
         self.arrivals = 0
         self._pools = {}
 
@@ -249,6 +251,7 @@ class Resources:
 
     def forget_textures_but(self, wanted: set[TextureKey]) -> None:
         """Free textures of a size or kind that this frame does not use."""
+        wanted = wanted | self.held
         self.textures = {key: texture for key, texture in self.textures.items() if key in wanted}
         self.made_from = {key: value for key, value in self.made_from.items() if key in wanted}
 
