@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from splat_addon.rendering import Camera, Light, Scene, Settings, look_at
+from splat_addon.rendering.features import hidden_objects
 from splat_addon.rendering.plan import executor
 from splat_addon.rendering.plan.frame_plan import FramePlan
 from splat_addon.rendering.plan.repeats import Repeats
@@ -57,6 +58,16 @@ def test_layers_are_drawn_anew(render, monkeypatch):
     """How many there are is read while they are drawn."""
     _, ran = drawn(render, monkeypatch, scene(transparent=True), Settings(samples=SAMPLES))
     assert ran.count("visibility") >= SAMPLES
+
+
+@pytest.mark.parametrize("shares", [(), (0.5,)])
+def test_samples_are_drawn_anew_only_where_hidden_objects_are_looked_for(render, monkeypatch, shares):
+    for name, value in {"LEAST_OBJECTS": 2, "LEAST_SURFELS": 1, "_SHARES": shares}.items():
+        monkeypatch.setattr(hidden_objects, name, value)
+    frame, ran = drawn(render, monkeypatch, scene(), Settings(samples=SAMPLES))
+    anew, _ = drawn(render, monkeypatch, scene(), Settings(samples=SAMPLES), may_repeat=False)
+    assert ran.count("visibility") == (SAMPLES if shares else 1)
+    np.testing.assert_array_equal(frame.color, anew.color)
 
 
 def test_calls_hold_for_the_textures_that_they_drew_into():

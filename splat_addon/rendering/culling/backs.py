@@ -13,7 +13,7 @@ from ..scene.camera import Camera
 from ..scene.table import InstanceTable
 
 #: Surfels of an instance that are looked at, and of all together.
-_SOME, _MOST = 256, 1 << 20
+_SOME, _MOST = 256, 1 << 16
 
 #: Instances of a set that are looked at together with those of other sets.
 _FEW = 4

@@ -35,8 +35,8 @@ _BUILDING, _REFITTING = 3.0, 2.5
 #: The share of surfels that a cut must spare a view at least.
 _LEAST_SPARED = 0.1
 
-#: Surfels of an instance from which a view's cut is estimated.
-_SOME = 256
+#: Surfels of an instance from which a view's cut is estimated, and of all together where there are many instances.
+_SOME, _OF_ALL = 256, 1 << 12
 
 
 def has_levels(instance: Instance) -> bool:
@@ -99,7 +99,8 @@ def merging(
 def _spared(surfels: Surfels, instances: InstanceTable, camera: Camera, tolerance: float) -> np.ndarray:
     """(n,) the share of a set that a cut spares for each of its instances, from the spacing of some of its surfels in
     the picture."""
-    ahead, step = instances.from_eye(camera).model_views[:, 2], max(len(surfels) // _SOME, 1)
+    of_each = max(min(_SOME, _OF_ALL // len(instances)), 1)
+    ahead, step = instances.from_eye(camera).model_views[:, 2], max(len(surfels) // of_each, 1)
     spacing = surfels.scales[::step].min(axis=1) / SAMPLE_SIZE
     depth = -(ahead[:, :3] @ surfels.positions[::step].T + ahead[:, 3:])
     pixels = spacing * camera.pixels_per_unit() * instances.stretches[:, :1]

@@ -147,6 +147,7 @@ def _objects_front_to_back(tile, p: Pass, splats: Items, viewport) -> Iterator[I
 
 def _cover(tile, p: Pass, viewport) -> Cover:
     """How far each cell sees that has any of a viewport."""
+    tile.repeats.give_up()
     if viewport is None:
         cells, begin = tile.fill(p).read(0)[..., 0], np.zeros(2)
     else:

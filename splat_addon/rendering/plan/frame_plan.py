@@ -75,10 +75,9 @@ class FramePlan:
 
     @cached_property
     def may_repeat(self) -> bool:
-        """Whether the same calls draw all samples from one place: nothing is read while passes run, and no textures
-        are swapped."""
-        are_passes = not any(isinstance(step, Loop) for step in self.steps)
-        return are_passes and not any(p.all("updates") or (p.each and p.once is None) for p in self.steps)
+        """Whether the same calls may draw all samples from one place: no loop looks when it ends, and no textures are
+        swapped. A pass that reads what it drew has them drawn anew."""
+        return not any(isinstance(step, Loop) or step.all("updates") for step in self.steps)
 
     @cached_property
     def filled(self) -> dict[str, Texture]:

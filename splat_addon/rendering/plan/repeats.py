@@ -74,6 +74,11 @@ class Repeats:
         known = self._calls.get(id(p))
         return known[1] if known and known[0] is p else None
 
+    def give_up(self) -> None:
+        """Keep no calls: what a pass draws depends on what it has drawn."""
+        self.records, self._now = False, None
+        self.forget()
+
     def forget(self) -> None:
         """Forget the calls of all passes."""
         self._calls.clear()

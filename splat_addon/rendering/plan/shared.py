@@ -103,7 +103,8 @@ class Shared:
             return build_view(table, camera, epsilon, whole, epsilon_length=length), Repeats()
         view = self.kept(("views", place), lambda: SampleViews(table, camera, whole, epsilon, length)).of(camera)
         may_repeat = self.plan.may_repeat and len(self.plan.tiles) == 1
-        return view, self.kept(("repeats", place), lambda: Repeats(True)) if may_repeat else Repeats()
+        repeats = self.kept(("repeats", place), lambda: Repeats(may_repeat))
+        return view, repeats if repeats.records else Repeats()
 
     def program(self, p: Pass, names: tuple, make: Callable[[], Pipeline]) -> Pipeline:
         """The program of a pass with these names of its vertex shader and variants."""
