@@ -39,10 +39,8 @@ def method_of(label: str) -> str:
 
 
 @pytest.mark.parametrize("pixel", FILTERS)
-def test_every_row_names_a_method(pixel):
-    (table,) = (each for each in tables("evidence/trade.md") if each[0][0] == f"{pixel} pixel")
-    labels = [row[0] for row in table[1:] if not row[0].startswith("the same")]
-    assert [label for label in labels if not method_of(label)] == []
+def test_every_row_with_a_time_names_a_method(pixel):
+    assert [label for label in measured(pixel) if not method_of(label)] == []
 
 
 @pytest.mark.parametrize("preset", PRESETS.values(), ids=PRESETS)

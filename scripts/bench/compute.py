@@ -21,11 +21,10 @@ from measuring.timer_queries import has_timer_queries, timed_draws
 from measuring.timing import in_turn
 from splat_addon.hierarchy import cut_blocks, entries_of
 from splat_addon.quaternions import axes_columns
-from splat_addon.rendering import Renderer, Settings, open_device, plan
+from splat_addon.rendering import Renderer, Settings, open_device
 from splat_addon.rendering.detail.hierarchies import hierarchy_of
 from splat_addon.rendering.detail.levels import sight
 from splat_addon.rendering.device import Device
-from splat_addon.rendering.passes.decisions import merging
 from splat_addon.sampling import PLAIN, sample_mesh
 
 DEVICES = ("standalone",)
@@ -132,7 +131,7 @@ def run(options, report) -> None:
     surfels = sample_mesh(load(options.models / options.model), resolution=options.resolution, **PLAIN)
     scene, camera = in_view(surfels, options.size, fov=FIELD_OF_VIEW)
     settings = Settings(outputs=("color",), shadow_resolution=0, profile=True)
-    (instance,) = plan(scene, camera, settings).find(merging)
+    (instance,) = scene.surfels
     levels, seen = hierarchy_of(surfels), sight(instance, camera, False, settings.detail_tolerance)
     splats = packed(surfels, levels.nodes, entries_of(levels, cut_blocks(levels.blocks, seen)))
     trial = Trial(device, splats, instance.model_view(camera), options.size)

@@ -15,6 +15,7 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from PIL import Image
@@ -25,6 +26,18 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, Ti
 from environment import ROOT
 from splat_addon.reference.metrics import srgb
 from splat_addon.whole_files import write_whole
+
+
+class Table(NamedTuple):
+    """A finished table. lines: of cells, strings."""
+
+    about: str
+    columns: list[str]
+    lines: list[list[str]]
+
+    @property
+    def text(self) -> str:
+        return markdown(self.columns, self.lines)
 
 
 class Report:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import statistics
 import time
 import tracemalloc
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple
@@ -104,3 +104,47 @@ def in_turn(
                 if turn >= warm:
                     made.values[name].append(value)
     return made
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """values: measurements of a job, each with that of the unit just before it. result: the job's last."""
+
+    values: list[tuple]
+    result: object
+
+    def own(self, pick: Callable = float) -> Spread:
+        return Spread.of(pick(value) for value, _ in self.values)
+
+    def ratios(self, pick: Callable = float) -> list[float]:
+        return [pick(value) / pick(unit) for value, unit in self.values]
+
+
+#: Turns that pairs have at least, however long they take.
+LEAST_TURNS = 3
+
+
+def in_pairs(
+    jobs: Mapping, unit: Job, turns: int, seconds: float, measure: Callable = processor, steps: Callable = iter
+) -> Iterator[tuple[object, Pairs]]:
+    """Yield (name, pairs) of each job once it has run in its turns, each time right after the unit.
+
+    Both run once more before each measurement, not counted: the first of several equal runs prepares what the others
+    find. turns: at most, so many that they take `seconds` together, but three at least if so many are allowed.
+    """
+    for name, job in steps(jobs.items()):
+        values, begun = [], time.perf_counter()
+        while len(values) < turns and (len(values) < LEAST_TURNS or time.perf_counter() - begun < seconds):
+            unit()
+            beside, _ = measure(unit)
+            job()
+            value, result = measure(job)
+            values.append((value, beside))
+        yield name, Pairs(values, result)
+
+
+def noise(values: Iterable[float]) -> float:
+    """The median distance from the median: half of the values are as near."""
+    values = list(values)
+    middle = statistics.median(values)
+    return statistics.median(abs(value - middle) for value in values)

@@ -29,14 +29,19 @@ def measured(runs):
 
 
 def rows_of(folder):
-    with (folder / "trade.csv").open(encoding="utf-8") as file:
+    with (folder / "methods.csv").open(encoding="utf-8") as file:
         return list(csv.DictReader(file))
+
+
+def timed(rows):
+    """Those of choices: the truth of fewer rays has no time."""
+    return [row for row in rows if row["ratio"]]
 
 
 def test_every_quick_choice_has_a_row_with_numbers_in_order(measured):
     from bench.trade.choices import choices
 
-    rows = rows_of(measured[1])
+    rows = timed(rows_of(measured[1]))
     assert len(rows) == len(choices("methods")) > 8
     for row in rows:
         assert float(row["ms_min"]) <= float(row["ms"]) <= float(row["ms_max"])
@@ -46,14 +51,14 @@ def test_every_quick_choice_has_a_row_with_numbers_in_order(measured):
 
 
 def test_the_default_filter_is_the_truest_under_its_own_pixel(measured):
-    rows = [r for r in rows_of(measured[1]) if r["storage"] == r["sum_format"] == "float32"]
+    rows = [r for r in timed(rows_of(measured[1])) if r["storage"] == r["sum_format"] == "float32"]
     assert min(rows, key=lambda row: float(row["flip_gaussian"]))["method"] == "mip"
     assert min(rows, key=lambda row: float(row["flip_box"]))["method"] == "quad"
 
 
 def test_the_table_says_how_it_was_come_by_and_names_no_host(measured):
     text = (measured[1] / "trade.md").read_text(encoding="utf-8")
-    assert "32 x 32 pixels, medians of 2 turns, truth of 2 x 2 samples" in text
+    assert "32 x 32 pixels, at most 2 turns in pairs, truth of 2 x 2 samples" in text
     assert "commit " in text and "driver " in text and "Mip Filter, 1 x 1" in text
     assert platform.node() not in text.split()
 
@@ -69,6 +74,66 @@ def test_a_missing_model_is_said_aloud_and_the_rest_measured(measured):
     assert "Skipped: armadillo" in done.stdout
     assert "**Skipped: armadillo**" in (folder / "trade.md").read_text(encoding="utf-8")
     assert {row["scene"] for row in rows_of(folder)} == {"text"}
+
+
+def test_a_run_goes_on_with_the_rows_that_are_kept(tmp_path):
+    from bench.trade.kept import Kept
+    from environment import Problem
+
+    file, measured = tmp_path / "rows.json", []
+
+    def measure():
+        measured.append(1)
+        return [{"ratio": 1.5, "is_first": len(measured) == 1}]
+
+    first = Kept(file, {"size": 32}, "a device").measured("methods/text", measure)
+    assert Kept(file, {"size": 32}, "a device", resumes=True).measured("methods/text", measure) == first
+    assert len(measured) == 1
+    with pytest.raises(Problem, match="other sources or options"):
+        Kept(file, {"size": 64}, "a device", resumes=True)
+    Kept(file, {"size": 32}, "a device").measured("methods/text", measure)
+    assert len(measured) == 2
+
+
+def test_the_pages_have_a_place_for_all_that_is_measured():
+    from bench.trade import PARTS
+    from environment import ROOT
+    from measuring.pages import names
+
+    places = {name for page in (ROOT / "docs").rglob("*.md") for name in names(page.read_text(encoding="utf-8"))}
+    assert places == {"run", *(name for part in PARTS.values() for name in part.made([]))}
+
+
+def test_what_is_measured_is_written_between_the_marks_of_a_page(tmp_path):
+    from environment import Problem
+    from measuring.pages import fill
+
+    page = tmp_path / "a.md"
+    page.write_text("In <!-- measured: time -->2<!-- end --> s:\n\n<!-- measured: all --><!-- end -->\nEnd.\n", "utf-8")
+    made = {"time": "3", "all": "| a |\n|---|\n| 1 |"}
+    assert fill(tmp_path, made) == [page] and fill(tmp_path, made) == []
+    filled = (
+        "In <!-- measured: time -->3<!-- end --> s:\n\n<!-- measured: all -->\n\n| a |\n|---|\n| 1 |\n\n<!-- end -->"
+    )
+    assert page.read_text("utf-8") == f"{filled}\nEnd.\n"
+    with pytest.raises(Problem, match="differ: more"):
+        fill(tmp_path, {**made, "more": ""})
+
+
+def test_a_job_is_measured_right_after_the_unit_and_both_run_once_before():
+    from measuring.timing import in_pairs, noise
+
+    ran, clock = [], iter([1.0, 2.0, 4.0, 2.0, 1.0, 1.5])
+    jobs = {name: (lambda name=name: ran.append(name)) for name in ("unit", "job")}
+
+    def measure(job):
+        job()
+        return next(clock), None
+
+    ((name, pairs),) = in_pairs({"job": jobs["job"]}, jobs["unit"], 7, 0.0, measure)
+    assert name == "job" and ran == ["unit", "unit", "job", "job"] * 3
+    assert pairs.ratios() == [2.0, 0.5, 1.5] and noise(pairs.ratios()) == 0.5
+    assert len(next(in_pairs(jobs, jobs["unit"], 2, 9.0, lambda job: (1.0, job())))[1].values) == 2
 
 
 def test_nothing_measured_is_a_failure(runs):

@@ -33,17 +33,16 @@ def settings_of(methods: tuple[str, ...], **values) -> list[Settings]:
 
 EVERY, BOTH = tuple(METHODS), ("quad", "mip")
 METHODS_ALONE = settings_of(EVERY) + settings_of(("quad",), supersampling=(2, 4))
-ALL = [
-    *METHODS_ALONE,
-    *settings_of(("quad",), supersampling=(3,)),
-    *settings_of(("mip",), supersampling=(2,)),
-    *settings_of(BOTH, sum_format=("float16",)),
-    *settings_of(BOTH, storage=("16-bit",), sum_format=("float32", "float16")),
+#: Samples, hardware samples, thresholds and formats.
+FORMATTED = [
+    *settings_of(("quad",), supersampling=(1, 2, 3)),
     *settings_of(("quad",), multisampling=(4,), sample_shading=(False, True)),
     *settings_of(("quad",), edge_threshold=(0.25, 1.0)),
     *settings_of(("quad",), multisampling=(4,), edge_threshold=(0.25,)),
+    *settings_of(BOTH, storage=("16-bit",)),
+    *settings_of(BOTH, sum_format=("float16",)),
+    *settings_of(BOTH, storage=("16-bit",), sum_format=("float16",)),
 ]
-
 #: Layers of transparent surfaces. As many as the deepest place of a scene lose nothing.
 LAYERS = [
     YARDSTICK,
@@ -60,14 +59,17 @@ OF_PAPERS = [
     *settings_of(("ewa", "ewa_object"), as_printed=(False, True)),
     *settings_of(("mip", "raycast", "raycast_printed", "sprites", "sprites_printed")),
 ]
-#: What the page compares: formats, layers and thresholds are the other parts' and other pages'.
+#: What the page compares.
 OF_PAGE = [
     *METHODS_ALONE,
     *settings_of(("mip",), supersampling=(2,)),
     *settings_of(("quad",), multisampling=(4,), sample_shading=(False, True)),
     *settings_of(("ewa", "ewa_object"), as_printed=(True,)),
 ]
-CHOICES = {"page": OF_PAGE, "methods": METHODS_ALONE, "all": ALL, "layers": LAYERS, "papers": OF_PAPERS}
+ALL = list(dict.fromkeys([*OF_PAGE, *FORMATTED]))
+CHOICES = {
+    "page": OF_PAGE, "methods": METHODS_ALONE, "formats": FORMATTED, "all": ALL, "layers": LAYERS, "papers": OF_PAPERS
+}  # fmt: skip
 
 #: The choices shown beside the reference.
 PICTURED = frozenset([*settings_of(("mip", "ewa", "raycast")), replace(YARDSTICK, supersampling=2)])
@@ -76,6 +78,14 @@ PICTURED = frozenset([*settings_of(("mip", "ewa", "raycast")), replace(YARDSTICK
 def choices(name: str = "all", multisample_counts: tuple[int, ...] = ()) -> list[Settings]:
     """The entries of `CHOICES` that the device's sample counts allow, including the yardstick."""
     return [settings for settings in CHOICES[name] if settings.multisampling in (0, *multisample_counts)]
+
+
+def of_case(case, name: str, multisample_counts: tuple[int, ...]) -> list[Settings]:
+    """What a scene is drawn with. For the page the promised scenes have all methods and samples, others the methods
+    alone, and both what the scene names."""
+    names = (name,) if name != "page" else ("page" if case.is_promised else "methods", case.more)
+    found = [settings for each in filter(None, names) for settings in choices(each, multisample_counts)]
+    return list(dict.fromkeys(found))
 
 
 def columns(settings: Settings) -> dict:

@@ -9,13 +9,15 @@ the mesh touches, so that it does not depend on how much of the picture it fills
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable
+from functools import partial
 from statistics import geometric_mean
 
 import numpy as np
 
 from bench.representation.meshes import load_colored, view
 from measuring.models import short
+from measuring.report import Table
 from splat_addon.differences import mean_flip, psnr
 from splat_addon.reference.kept import remembered
 from splat_addon.reference.triangles import render_triangles
@@ -37,24 +39,25 @@ _OF_FILTER = {"gaussian": {**_BALANCED.values, "samples": 16}, "box": {**_FINAL.
 SETTINGS = Settings(shading="flat", transparent_film=True, outputs=("color",))
 
 
-def measure_densities(renderer: Renderer, options, report) -> Iterator[dict]:
-    """A row for each model, density and reduction. Models that are missing are said and left out."""
-    for name in MODELS[: 1 if options.quick else None]:
-        try:
-            mesh = load_colored(options.models, name)
-        except FileNotFoundError as error:
-            report.say(f"**Skipped: {name}**. {error}.")
-            continue
-        camera, surface = view(mesh, 0, options.size), outline(mesh)
-        corners, colors = mesh.positions[mesh.triangles], mesh.corner_colors[..., :3]
-        truths = {kind: remembered(render_triangles)(corners, colors, camera, pixel_filter=kind) for kind in _OF_FILTER}
-        tried = [(pixels, "normal") for pixels in PIXELS] + [(_COMPARED, each) for each in REDUCTIONS[1:]]
-        for pixels, reduction in tried[2::4] if options.quick else tried:
-            surfels = _converted(mesh, _spacing(surface, camera, pixels), reduction)
-            drawn = _errors(renderer, Scene((surfels,)), camera, truths)
-            yield {
-                "model": short(name), "pixels": pixels, "reduction": reduction, "surfels": len(surfels), **drawn
-            }  # fmt: skip
+def units(renderer: Renderer, options, report) -> dict[str, Callable[[], list[dict]]]:
+    names = MODELS[: 1 if options.quick else None]
+    return {short(name): partial(_measure, name, renderer, options, report) for name in names}
+
+
+def _measure(name: str, renderer: Renderer, options, report) -> list[dict]:
+    """A row for each density and reduction of a model."""
+    mesh = load_colored(options.models, name)
+    camera, surface = view(mesh, 0, options.size), outline(mesh)
+    corners, colors = mesh.positions[mesh.triangles], mesh.corner_colors[..., :3]
+    truths = {kind: remembered(render_triangles)(corners, colors, camera, pixel_filter=kind) for kind in _OF_FILTER}
+    tried = [(pixels, "normal") for pixels in PIXELS] + [(_COMPARED, each) for each in REDUCTIONS[1:]]
+    rows = []
+    for pixels, reduction in report.steps(tried[2::4] if options.quick else tried, short(name)):
+        surfels = _converted(mesh, _spacing(surface, camera, pixels), reduction)
+        drawn = _errors(renderer, Scene((surfels,)), camera, truths)
+        row = {"model": short(name), "pixels": pixels, "reduction": reduction, "surfels": len(surfels)}
+        rows.append({**row, **drawn})
+    return rows
 
 
 def _spacing(surface: Outline, camera, pixels: float) -> float:
@@ -71,7 +74,7 @@ def _converted(mesh, spacing: float, reduction: str):
 
 
 def _errors(renderer: Renderer, scene: Scene, camera, truths: dict) -> dict:
-    """Columns of a row: seconds of each preset, and FLIP and dB of each error under each filter."""
+    """Columns of a row: FLIP and dB of each error under each filter."""
     exact, row = ExactPictures.drawn(renderer, scene, camera, SETTINGS, 16), {}
     for kind, values in _OF_FILTER.items():
         truth = truths[kind]
@@ -82,7 +85,6 @@ def _errors(renderer: Renderer, scene: Scene, camera, truths: dict) -> dict:
             "splatting": (frame.color, exact.colors[kind]),
             "both": (frame.color, truth.color),
         }
-        row[f"ms_{kind}"] = round(frame.stats["milliseconds"], 1)
         for name, (picture, beside) in pairs.items():
             picture, beside = picture[..., :3], np.asarray(beside[..., :3], np.float32)
             row[f"flip_{name}_{kind}"] = round(mean_flip(picture, beside) / share, 4)
@@ -90,28 +92,20 @@ def _errors(renderer: Renderer, scene: Scene, camera, truths: dict) -> dict:
     return row
 
 
-def density_lines(rows: list[dict]) -> Iterator[list]:
-    """A line for each density: the mean over the models, and the worst of them, of FLIP of the representation and of
-    both errors."""
+def made(rows: list[dict]) -> dict[str, Table]:
+    about = "Balanced (16 samples) under the Gaussian, Final under the box: FLIP, mean over the models (worst)"
     normal = [row for row in rows if row["reduction"] == "normal"]
-    for pixels in PIXELS:
-        mine = [row for row in normal if row["pixels"] == pixels]
-        if not mine:
-            continue
-        first = [row for row in normal if row["pixels"] == _COMPARED]
-        yield [f"{pixels:g}", *_cells(mine, first)]
-
-
-def reduction_lines(rows: list[dict]) -> Iterator[list]:
-    """A line for each reduction."""
-    for reduction in REDUCTIONS:
-        mine, first = (
-            [row for row in rows if row["pixels"] == _COMPARED and row["reduction"] == each]
-            for each in (reduction, "normal")
-        )
-        if not mine:
-            continue
-        yield [reduction.replace("_", " "), *_cells(mine, first)]
+    by_pixels = {f"{pixels:g}": [row for row in normal if row["pixels"] == pixels] for pixels in PIXELS}
+    compared = [row for row in rows if row["pixels"] == _COMPARED]
+    by_reduction = {
+        name.replace("_", " "): [row for row in compared if row["reduction"] == name] for name in REDUCTIONS
+    }
+    first = [row for row in compared if row["reduction"] == "normal"]
+    found = {}
+    for name, head, by in (("densities", "pixels a surfel", by_pixels), ("reductions", "reduction", by_reduction)):
+        lines = [[key, *_cells(mine, first)] for key, mine in by.items() if mine]
+        found[name] = Table(f"{about}:", [head, *HEAD], lines)
+    return found
 
 
 HEAD = [

@@ -8,17 +8,20 @@ changes in the exact pictures, too, does not count. It is measured under the pix
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
 
 from bench.trade.cases import CASES, View
+from measuring.report import Table
 from splat_addon.differences import srgb
 from splat_addon.rendering import Camera, Renderer, Settings
 from splat_addon.trade import Choice, ExactPictures, series_of
 
 SCENES = "checker", "torus"
+HOW = "shifted", "turned"
 STEPS = 16
 
 #: Degrees that the camera turns around the scene from picture to picture: a pixel or so.
@@ -33,21 +36,30 @@ def choices() -> list[Choice]:
     return found + [Choice(name, {"method": method, "detail_tolerance": 0.0}) for name, method in _OTHERS.items()]
 
 
-def stability_lines(renderer: Renderer, options) -> Iterator[list]:
-    """A line for each choice: flicker in each scene, while the picture shifts and while the camera turns."""
-    settings, columns = Settings(shading="flat", outputs=("color",)), []
-    for name in SCENES[: 1 if options.quick else None]:
-        scene, camera = CASES[name].build(View(options.size, options.models))
-        for cameras in (shifted(camera), turned(camera)):
-            exact = [ExactPictures.drawn(renderer, scene, each, settings, 16).colors for each in cameras]
-            columns.append([_flicker(renderer, scene, cameras, exact, each.of(settings)) for each in choices()])
-    for number, choice in enumerate(choices()):
-        yield [choice.name, *(f"{column[number]:.2f}" for column in columns)]
+def units(renderer: Renderer, options, report) -> dict[str, Callable[[], list[dict]]]:
+    return {name: partial(_measure, name, renderer, options) for name in SCENES[: 1 if options.quick else None]}
 
 
-def heads(options) -> list[str]:
-    names = SCENES[: 1 if options.quick else None]
-    return [f"{name}, {how}" for name in names for how in ("shifted", "turned")]
+def _measure(name: str, renderer: Renderer, options) -> list[dict]:
+    """A row for each choice: flicker while the picture shifts and while the camera turns."""
+    settings = Settings(shading="flat", outputs=("color",))
+    scene, camera = CASES[name].build(View(options.size, options.models))
+    rows = [{"scene": name, "choice": choice.name} for choice in choices()]
+    for how, cameras in zip(HOW, (shifted(camera), turned(camera)), strict=True):
+        exact = [ExactPictures.drawn(renderer, scene, each, settings, 16).colors for each in cameras]
+        for row, choice in zip(rows, choices(), strict=True):
+            row[how] = round(_flicker(renderer, scene, cameras, exact, choice.of(settings)), 3)
+    return rows
+
+
+def made(rows: list[dict]) -> dict[str, Table]:
+    about = "Flicker in code values, over 16 shifts within a pixel, and 16 pictures of a camera that turns:"
+    scenes = list(dict.fromkeys(row["scene"] for row in rows))
+    lines = [
+        [choice.name, *(f"{row[how]:.2f}" for row in rows if row["choice"] == choice.name for how in HOW)]
+        for choice in choices()
+    ]
+    return {"flicker": Table(about, ["", *(f"{name}, {how}" for name in scenes for how in HOW)], lines)}
 
 
 def shifted(camera: Camera) -> list[Camera]:
