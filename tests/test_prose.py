@@ -69,8 +69,8 @@ SOURCES = sorted(
 
 
 def prose(page: Path) -> str:
-    """The running text of a page, without tables, code blocks, comments, pictures and headings."""
-    text = re.sub(r"```.*?```|<!--.*?-->", "", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+    """The running text of a page, without tables, code blocks, pictures, headings and what a bench writes."""
+    text = re.sub(r"```.*?```|<!-- measured: .*?<!-- end -->", "", page.read_text(encoding="utf-8"), flags=re.DOTALL)
     text = re.sub(r"!\[[^\]]*\]\([^)]*\)", "", text, flags=re.DOTALL)
     return "\n".join(line for line in text.splitlines() if not line.startswith(("|", "#")))
 

@@ -45,7 +45,7 @@ class Report:
 
     def __init__(self, name: str, about: str, command: str, out: Path, pictures: Path):
         title, _, rest = about.strip().partition("\n")
-        self.page, self.pictures, self.out = out / f"{name}.md", pictures, out
+        self.page, self.pictures, self.out, self.command = out / f"{name}.md", pictures, out, command
         self.parts = [f"# {title.rstrip('.')}", *filter(None, [rest.strip()]), f"`{command}`"]
         self.console = Console()
         columns = TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn(), TimeRemainingColumn()

@@ -34,7 +34,7 @@ def rows_of(folder):
 
 
 def timed(rows):
-    """Those of choices: the truth of fewer rays has no time."""
+    """The rows of choices: the truth of fewer rays has no time."""
     return [row for row in rows if row["ratio"]]
 
 

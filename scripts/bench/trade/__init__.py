@@ -59,7 +59,7 @@ def run(options, report) -> None:
     kept = Kept(options.out / "rows.json", _of(options), _device(renderer), options.resume)
     how = f"at most {options.turns} turns in pairs, truth of {options.samples} x {options.samples} samples"
     report.header(renderer.device, f"{options.size} x {options.size} pixels, {how}")
-    pages = {"run": _said(kept.run, options)}
+    pages = {"run": _said(kept.run, options, report)}
     for name in options.parts:
         pages |= run_part(name, renderer, options, report, kept)
     if options.pages:
@@ -79,6 +79,7 @@ def run_part(name: str, renderer: Renderer, options, report, kept: Kept) -> dict
         except FileNotFoundError as error:
             skipped[unit] = str(error)
             report.say(f"**Skipped: {unit}**. {error}.")
+        print(f"{name}, {unit}: {perf_counter() - begun:.0f} s", flush=True)
     if not rows:
         raise Problem(f"Nothing was measured. {'; '.join(skipped.values())}.")
     columns = dict.fromkeys(key for row in rows for key in row)
@@ -103,6 +104,7 @@ def _device(renderer: Renderer) -> str:
     return renderer.device.renderer.split(" (")[0]
 
 
-def _said(run: dict, options) -> str:
-    size = f"{options.size} x {options.size} pixels"
-    return f"`python3 scripts/bench.py trade --pages` ({size}; {run['machine']}; {run['date']}, commit {run['commit']})"
+def _said(run: dict, options, report) -> str:
+    command = report.command.replace(" --resume", "")
+    how = f"{options.size} x {options.size} pixels", run["machine"], f"{run['date']}, commit {run['commit']}"
+    return f"`{command}` ({'; '.join(how)})"
