@@ -448,9 +448,10 @@ class Renderer:
 
         def told(p, step):
             nonlocal started
-            done = (stats["tile"] + step / frame_plan.count) / len(frame_plan.tiles)
-            if progress and progress(done, p.name) is False:
-                raise RenderCancelled
+            if progress:
+                done = (stats["tile"] + step / frame_plan.count) / len(frame_plan.tiles)
+                if progress(done, p.name) is False:
+                    raise RenderCancelled
             started = perf_counter()
 
         def done(p, target):

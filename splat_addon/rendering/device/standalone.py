@@ -140,13 +140,13 @@ class _Target:
 
     def clear(self, color=None, depth=None):
         # moderngl clears everything at once but honours write masks, so each half is masked by hand.
-        framebuffer = self.framebuffer
+        framebuffer, is_masked = self.framebuffer, bool(self._colors) and color is None
         framebuffer.depth_mask = depth is not None
-        if self._colors:
-            framebuffer.color_mask = self._mask(color is not None)
+        if is_masked:
+            framebuffer.color_mask = self._mask(False)
         value = tuple(color) if hasattr(color, "__len__") else (color or 0.0,) * 4
         framebuffer.clear(*value, depth=1.0 if depth is None else depth)
-        if self._colors:
+        if is_masked:
             framebuffer.color_mask = self._mask(True)
 
     def _mask(self, is_written):

@@ -33,7 +33,8 @@ def fill_pixels(tile, p: Pass):
     if tile.seen_part(p, _BESIDE):
         pixels = background_texels(tile.scene, tile.settings)
         for texture in p.fills:
-            tile.clear(tile.resources.device.target([tile.texture(texture)]), color=pixels[texture.name])
+            target = tile.resources.device.target([tile.texture(texture)])
+            tile.clear(target, color=pixels[texture.name], lasts=True)
     return fill_lit(tile, p)
 
 

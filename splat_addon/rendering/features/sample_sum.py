@@ -17,16 +17,9 @@ from ..plan.hosts import Host
 from ..settings import MAX_SAMPLES, held_arrays
 
 
-def _around(plan) -> tuple[int, int, int, int]:
-    """x, y, width, height in pixels of all tiles together."""
-    left, bottom = (min(tile[axis] for tile in plan.tiles) for axis in (0, 1))
-    right, top = (max(tile[axis] + tile[axis + 2] for tile in plan.tiles) for axis in (0, 1))
-    return left, bottom, right - left, top - bottom
-
-
 def _place(tile) -> tuple[int, int, int, int]:
     """x, y, width, height of a tile, without its margin, in the sums."""
-    (left, bottom, *_), (x, y, width, height) = _around(tile.plan), tile.rectangle
+    (left, bottom, *_), (x, y, width, height) = tile.plan.drawn, tile.rectangle
     return x - left, y - bottom, width, height
 
 
@@ -37,7 +30,7 @@ def _corner(tile) -> tuple[int, int]:
 
 
 def _of_picture(plan, pixels: tuple[int, int]) -> tuple[int, int]:
-    return _around(plan)[2:]
+    return plan.drawn[2:]
 
 
 VALUES = {"corner": ("vec2", _corner)}

@@ -24,12 +24,13 @@ class Execution:
 
     def __init__(self, told: Callable[[Pass, int], None], done: Callable[[Pass, Target], None]):
         self._is_shared_done, self._told, self._done = False, told, done
-        self.turns = 0
+        self._follows, self.turns = False, 0
 
     def run(self, steps: tuple[Step, ...], tile: TileContext) -> Generator[Pause, None, Target | None]:
         """Run all steps, with pauses between and in them; returns the target of the last pass. turns: maximum number of
         iterations of loops in any tile."""
         self._number, target = 0, None
+        self._follows = tile.resources.follows(tile.repeats)
         for step in steps:
             # none after the last, which completes what is seen
             yield Pause(target)
@@ -53,7 +54,7 @@ class Execution:
     def _drawn(self, p: Pass, tile: TileContext) -> Generator[Pause, None, Target | None]:
         self._told(p, self._number - 1)
         if known := tile.repeats.of(p):
-            for call in known.calls:
+            for call in known.calls if self._follows else (*known.lasting, *known.calls):
                 call()
             target = known.target
         else:

@@ -74,6 +74,13 @@ class FramePlan:
         return sum(len(s.body) * s.times + len(s.last) if isinstance(s, Loop) else 1 for s in self.steps)
 
     @cached_property
+    def drawn(self) -> tuple[int, int, int, int]:
+        """x, y, width, height in pixels of all tiles together."""
+        left, bottom = (min(tile[axis] for tile in self.tiles) for axis in (0, 1))
+        right, top = (max(tile[axis] + tile[axis + 2] for tile in self.tiles) for axis in (0, 1))
+        return left, bottom, right - left, top - bottom
+
+    @cached_property
     def may_repeat(self) -> bool:
         """Whether the same calls may draw all samples from one place: no loop looks when it ends, and no textures are
         swapped. A pass that reads what it drew has them drawn anew."""

@@ -19,9 +19,11 @@ Made = TypeVar("Made")
 
 
 class Calls(NamedTuple):
-    """What a pass called on the device, and the target that it returned."""
+    """What a pass called on the device, and the target that it returned. lasting: the calls whose effect is still there
+    for the next sample, unless something else was drawn between the two."""
 
     calls: list[Callable[[], None]]
+    lasting: list[Callable[[], None]]
     target: Target
 
 
@@ -39,7 +41,7 @@ class Repeats:
         self._found: dict[Hashable, object] = {}
         self._calls: dict[int, tuple[Pass, Calls]] = {}
         self._textures: dict[Hashable, DeviceTexture] = {}
-        self._now: list[Callable[[], None]] | None = None
+        self._now: tuple[list[Callable[[], None]], list[Callable[[], None]]] | None = None
 
     def found(self, key: Hashable, make: Callable[[], Made]) -> Made:
         """What was made for a key."""
@@ -47,11 +49,11 @@ class Repeats:
             self._found[key] = make()
         return self._found[key]
 
-    def call(self, call: Callable, *arguments, **options) -> None:
-        """Call something on the device."""
-        call(*arguments, **options)
+    def call(self, call: Callable, *arguments, lasts: bool = False) -> None:
+        """Call something on the device. lasts: before all other calls of the pass, and as `Calls.lasting`."""
+        call(*arguments)
         if self._now is not None:
-            self._now.append(partial(call, *arguments, **options))
+            self._now[lasts].append(partial(call, *arguments))
 
     def uses(self, key: Hashable, texture: DeviceTexture) -> DeviceTexture:
         """Note that a pass uses a texture."""
@@ -61,12 +63,12 @@ class Repeats:
 
     def begin(self) -> None:
         """Keep what is called from now on."""
-        self._now = [] if self.records else None
+        self._now = ([], []) if self.records else None
 
     def end(self, p: Pass, target: Target) -> None:
         """A pass is complete."""
         if self._now is not None:
-            self._calls[id(p)] = p, Calls(self._now, target)
+            self._calls[id(p)] = p, Calls(*self._now, target)
             self._now = None
 
     def of(self, p: Pass) -> Calls | None:

@@ -75,9 +75,9 @@ class TileContext(CutChoice):
         colors = [self.texture(texture, texture in updated) for texture in p.colors]
         return self.resources.device.target(colors, depth and self.texture(depth))
 
-    def clear(self, target: Target, color=None, depth: float | None = None) -> None:
-        """Clear a target, as its method does."""
-        self.repeats.call(target.clear, color, depth)
+    def clear(self, target: Target, color=None, depth: float | None = None, lasts: bool = False) -> None:
+        """Clear a target, as its method does. lasts: only its pass draws into the target, and a part of it alone."""
+        self.repeats.call(target.clear, color, depth, lasts=lasts)
 
     def draw_triangles(self, *call) -> None:
         """Draw, as the method of the device does."""
@@ -127,13 +127,14 @@ class TileContext(CutChoice):
             self.repeats.blocks[key] = self._values_in(block)
         return self.repeats.blocks[key]
 
-    def _values_in(self, block: Block) -> np.ndarray:
-        return std140(block, self._view_values if block is VIEW else [VALUES[name][1](self) for _, name in block[2]])
+    def _values_in(self, block: Block, packed: np.ndarray | None = None) -> np.ndarray:
+        values = self._view_values if block is VIEW else [VALUES[name][1](self) for _, name in block[2]]
+        return std140(block, values, packed)
 
     def bring_blocks(self) -> None:
         """Give the blocks that other samples made the values of this one."""
         for (rise, block), values in self.repeats.blocks.items():
-            values[:] = (replace(self, rise=rise) if rise else self)._values_in(block)
+            (replace(self, rise=rise) if rise else self)._values_in(block, values)
 
     @property
     def _view_values(self):

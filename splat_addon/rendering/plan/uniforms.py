@@ -104,21 +104,23 @@ def instance_values(items: Items) -> np.ndarray:
 _SIZES = {"float": (1, 1), "vec2": (2, 2), "vec4": (4, 4), "mat4": (16, 4)}
 
 
-def std140(block: Block, values) -> np.ndarray:
-    """float32 values of a block's fields in std140 layout: matrices column by column, padded to whole vectors."""
-    packed, at = np.zeros(_length(block[2]), np.float32), 0
-    for (kind, _), value in zip(block[2], values, strict=True):
-        size, alignment = _SIZES[kind]
-        at = -(-at // alignment) * alignment
-        packed[at : at + size] = np.asarray(value, np.float64).T.ravel()
-        at += size
+def std140(block: Block, values, packed: np.ndarray | None = None) -> np.ndarray:
+    """float32 values of a block's fields in std140 layout: matrices column by column, padded to whole vectors. packed:
+    an array of such values that takes these."""
+    places, length = _layout(block[2])
+    packed = np.zeros(length, np.float32) if packed is None else packed
+    for (place, is_matrix), value in zip(places, values, strict=True):
+        packed[place] = np.transpose(value).ravel() if is_matrix else value
     return packed
 
 
 @cache
-def _length(fields) -> int:
-    at = 0
+def _layout(fields) -> tuple[tuple[tuple[slice, bool], ...], int]:
+    """The place of each field, and whether it is a matrix; and the length of all of them."""
+    places, at = [], 0
     for kind, _ in fields:
         size, alignment = _SIZES[kind]
-        at = -(-at // alignment) * alignment + size
-    return -(-at // 4) * 4
+        at = -(-at // alignment) * alignment
+        places.append((slice(at, at + size), kind == "mat4"))
+        at += size
+    return tuple(places), -(-at // 4) * 4

@@ -66,6 +66,7 @@ class Resources:
         self.made_from = {}
         self.held: Set[TextureKey] = frozenset()
         self.arrivals = 0
+        self._last_drawn: ref | None = None
         self._pools = {}
 
     def surfels(
@@ -244,6 +245,11 @@ class Resources:
             _, width, height, format, samples = key
             self.textures[key] = self.device.texture((width, height), format, samples=samples)
         return self.textures[key]
+
+    def follows(self, drawn: object) -> bool:
+        """Whether the same was drawn last; it is from now on."""
+        last, self._last_drawn = self._last_drawn, ref(drawn)
+        return last is not None and last() is drawn
 
     def swap(self, key: TextureKey, other: TextureKey) -> None:
         """Swap the keys of two textures."""
