@@ -185,6 +185,17 @@ GlassRay parted(GlassRay ray, int number, float spread, float more) {
   return ray;
 }
 
+// Where light leaves glass towards lamps.
+struct GlassExit {
+  vec3 place;  // relative to the surfaces' origin
+  vec3 along;
+  vec3 share;
+  float spread2;
+  float reach;  // to the next surface, FAR for none
+};
+
+GlassExit glass_exits[2];  // the first and the last; a share of 0 for none
+
 float most_of(vec3 color) {
   return max(max(color.r, color.g), color.b);
 }
@@ -203,6 +214,7 @@ vec3 through_glass(vec3 position, vec3 normal) {
   along = bent(along, facing, -dot(facing, along), ior);
   vec3 share = glass_tint, lost = vec3(0.0), light = vec3(0.0), seen;
   float side = 1.0, frosted2 = 0.0;
+  glass_exits[0] = glass_exits[1] = GlassExit(from, along, vec3(0.0), 0.0, FAR);
   int part = -1;  // the next of the rays into which it has been parted; -1 as long as one is followed
   for (int i = 0; i < GLASS_CROSSINGS + GLASS_TAPS + 2; i++) {
     GlassMet met = GlassMet(FAR, vec3(0.0), vec3(1.0), 1.0, 0.0, false);
@@ -212,6 +224,10 @@ vec3 through_glass(vec3 position, vec3 normal) {
       bool goes_on = i < GLASS_CROSSINGS && most_of(share) > GLASS_LEAST;
       if (!goes_on && side > 0.0 && frosted2 == 0.0) break;  // what does not leave glass is black, as in Cycles
       if (goes_on) met = met_glass(from, along, side);
+      if (goes_on && side < 0.0) {
+        int number = most_of(glass_exits[0].share) > 0.0 ? 1 : 0;
+        glass_exits[number] = GlassExit(from, along, share, spread2, met.away);
+      }
       if (frosted2 == 0.0 && side < 0.0 && spread2 > FROSTED * FROSTED) {
         frosted2 = spread2;
         before = GlassRay(from, along, FAR, vec2(0.0), met.away);
@@ -272,6 +288,38 @@ void glass_mirror(inout vec3 radiance) {
   }
 }
 
+#part lights, see_through
+bool lamp_is_far;  // a direction
+
+void see_through_hide(inout Incident here, LightTexels of, vec3 position, vec3 normal) {
+  lamp_is_far = !(of.place.w > 0.5);
+}
+
+#part principled, see_through, lights
+#include "lib/lamp_lobe.glsl"
+
+// A lobe that is narrower shows no lamp, as no ray finds one.
+const float LAMP_NARROWEST = 1e-6;
+
+// Lamps shine through rough glass. The normal that they get is turned away from them, so that glass does not dim them.
+void glass_lit(inout vec3 radiance, Lobe lobe, vec3 position, vec3 normal) {
+  if (!(most_of(glass_passed) > 0.0)) return;
+  int count = int(frame.light_count);
+  for (int i = 0; i < 2 * count; i++) {
+    GlassExit at = glass_exits[i < count ? 0 : 1];
+    if (!(most_of(at.share) > 0.0)) continue;
+    vec3 along = normalize(mat3(frame.from_glass) * at.along);
+    Incident light = incident(i < count ? i : i - count, (frame.from_glass * vec4(at.place, 1.0)).xyz, -along);
+    vec3 toward = mat3(frame.to_glass) * light.middle;
+    float away2 = dot(light.middle, light.middle), ahead = dot(light.middle, along);
+    float width2 = at.spread2 + dot(light.half_u, light.half_u) / max(away2, 1e-30);
+    bool reaches = at.reach >= FAR || (!lamp_is_far && dot(toward, toward) < at.reach * at.reach);
+    if (!reaches || !(ahead > 0.0) || !(width2 > LAMP_NARROWEST)) continue;
+    float found = lamp_lobe(away2 / (ahead * ahead) - 1.0, width2);
+    radiance += glass_passed * at.share * light.irradiance * found;
+  }
+}
+
 #part principled, see_through, covered
 void glass_below_cover(inout Lobe lobe) {
   glass_passed *= passed_on;
@@ -290,6 +338,7 @@ void glass_shadows_prepare(inout Shaded s) {
 
 #part lights, glass_shadows
 #include "lib/glass_surfaces.glsl"
+#include "lib/lamp_lobe.glsl"
 
 const float GLASS_PI = 3.14159265358979, GLASS_GOLDEN_TURN = 2.39996323;
 // What bends no light.
@@ -304,12 +353,6 @@ const float LAMP_SPREAD = 0.35;
 const float LAMP_MOST = 8.0;
 
 float glass_around;  // by which the rays are turned, radians
-
-// Of a lobe, by the square of the tangent of an angle and that of its width.
-float lamp_lobe(float slope2, float width2) {
-  float cosine2 = 1.0 / (1.0 + slope2), sum = slope2 + width2;
-  return width2 / (GLASS_PI * sum * sum * cosine2 * sqrt(cosine2));
-}
 
 // What a crossing keeps of what is not reflected: the roughness that is not the glass's own loses light (GGX, Smith).
 float lamp_kept(float cosine, float roughness) {

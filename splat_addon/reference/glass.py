@@ -119,6 +119,13 @@ def met_first(surfaces: GlassSurfaces, places, directions, side) -> tuple[np.nda
     return found, away, normals
 
 
+def lamp_radiance(left: Left, to_lamp, irradiance: float) -> np.ndarray:
+    """(n, 3) what rays that have left rough glass see of a small far lamp. to_lamp: (3,) its direction."""
+    cosine = left.directions @ to_lamp / np.linalg.norm(to_lamp)
+    found = _lobe(1 / np.maximum(cosine, 1e-3) ** 2 - 1, left.spread**2)
+    return left.share * (irradiance * np.where(cosine > 0, found, 0.0))[:, None]
+
+
 def lamp_share(surfaces: GlassSurfaces, places, normals, to_lamp, is_far: bool, turn) -> np.ndarray:
     """(n, 3) what glass leaves of a lamp's light, of the picture's first sample. places: (n, 3), relative to the
     origin. normals: (n, 3) of matt surfaces there. to_lamp: (n, 3). is_far: whether that is only a direction. turn:

@@ -8,7 +8,7 @@ import pytest
 
 from splat_addon.reference import extremes, scenes
 from splat_addon.reference.brdf import dot, specular_albedo, unit
-from splat_addon.reference.glass import fresnel, lamp_share, met_first, through_glass
+from splat_addon.reference.glass import fresnel, lamp_radiance, lamp_share, met_first, through_glass
 from splat_addon.rendering import (
     Camera,
     Finish,
@@ -191,9 +191,9 @@ FLOOR = make_polygons([(-9, -9, 0), (9, -9, 0), (9, 9, 0), (-9, 9, 0)], [(0, 1, 
 FLOOR = PolygonInstance(FLOOR, materials=(Material(roughness=1.0, ior=1.0),))
 
 
-def pane(kind, ior):
+def pane(kind, ior, roughness=0.0):
     """Two sides of a pane above the floor."""
-    of = Material(roughness=0.0, ior=ior, finish=Finish(transmission=1.0, tint_power=1.0))
+    of = Material(roughness=roughness, ior=ior, finish=Finish(transmission=1.0, tint_power=1.0))
     sides = [((0, 0, 1.0), 1), ((0, 0, 0.9), -1)]
     if kind == "polygons":
         corners = np.array([(-3, -3, 0), (3, -3, 0), (3, 3, 0), (-3, 3, 0)])
@@ -237,3 +237,21 @@ def test_lamps_shine_through_a_pane_as_in_the_twin(kind, lamp, render):
     assert 0.1 < share.min() < share.max() < 0.9
     assert ours[some] == pytest.approx(share * bare[some], abs=0.02)
     assert render(found, BELOW, Settings(method="quad")).color[..., :3].max() < 0.01
+
+
+@pytest.mark.parametrize("kind", ["polygons", "surfels"])
+def test_a_lamp_shines_through_rough_glass(kind, render):
+    """Its light is spread in a lobe around the ways that rays take through both sides."""
+    under = Camera.perspective(look_at((0.1, 0, 0), (0, 0.2, 1)), 0.5, (16, 16), near=0.01, far=50)
+    sun, rough = Light("sun", energy=2.0, direction=(0.1, -0.3, -1)), 0.5
+    found = Scene(**pane(kind, IOR, rough), lights=(sun,))
+    ours = render(found, under, SETTINGS).color[..., :3].reshape(-1, 3)[::5]
+    eye = under.matrix_world[:3, 3]
+    along = unit(under.points_at(np.ones((16, 16))).reshape(-1, 3) - eye)[::5]
+    places, down = eye + along * (0.9 / along[:, 2:]), np.tile((0.0, 0, -1), (len(along), 1))
+    surfaces = surfaces_of(found.table)
+    left = through_glass(surfaces, places - surfaces.origin, along, down, TINT, IOR, rough)
+    f0 = np.full((len(places), 3), ((IOR - 1) / (IOR + 1)) ** 2)
+    mirrored, _ = specular_albedo(np.full(len(places), rough), -dot(along, down), f0, np.ones((len(places), 1)))
+    true = (1 - mirrored) * lamp_radiance(left, -np.array(sun.direction), 2.0)
+    assert true.max() > 3 * true.min() and ours == pytest.approx(true, rel=0.03)
