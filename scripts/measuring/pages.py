@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Writes what was measured into the pages of docs, between comments that name it:
 
-    <!-- measured: NAME -->what was measured<!-- end -->
+<!-- measured: NAME -->what was measured<!-- end -->
 """
 
 from __future__ import annotations

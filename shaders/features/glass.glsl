@@ -1,6 +1,5 @@
 // References: Walter, Marschner, Li, Torrance, "Microfacet Models for Refraction", 2007 (how rough surfaces spread what
-//             crosses them); McGuire, Mara, "Efficient GPU Screen-Space Ray Tracing", JCGT 2014 (steps that are even in
-//             the picture); Cycles' Principled and Glass BSDF (tints).
+//             crosses them); Cycles' Principled and Glass BSDF (tints).
 // Summary: follows light from a surface of glass back through all surfaces of glass, to where it meets the picture of
 //          what is behind glass, and else to the probes and the world. Textures: rendering/probes/glass.py and
 //          scene/glass_surfaces.py. The twin of reference/glass.py.
@@ -8,7 +7,7 @@
 #part principled, see_through
 #include "lib/finish.glsl"
 #include "lib/glass_surfaces.glsl"
-#include "lib/picture_maps.glsl"
+#include "lib/picture_march.glsl"
 
 vec3 glass_place;     // of the surface, view space
 vec3 glass_material;  // roughness, metallic, reflectance at normal incidence
@@ -22,109 +21,12 @@ vec3 facing_axis_of(vec3 along) {
 
 const int GLASS_CROSSINGS = 10;
 
-vec4 behind_at(int number, vec2 place) {
-  PictureTexels at = picture_texels(picture_map(ivec2(frame.glass_size), number), number, place);
-  vec4 below = mix(texelFetch(glass_picture, at.low_high.xy, 0), texelFetch(glass_picture, at.low_high.zy, 0), at.share.x);
-  vec4 above = mix(texelFetch(glass_picture, at.low_high.xw, 0), texelFetch(glass_picture, at.low_high.zw, 0), at.share.x);
-  return mix(below, above, at.share.y);
-}
-
-// Depth of what is behind glass, view units; FAR for nothing.
-float behind_depth_at(vec2 place) {
-  ivec2 size = ivec2(frame.glass_size), texel = clamp(ivec2(floor(place)), ivec2(0), size - 1);
-  float depth = texelFetch(glass_picture, texel + ivec2(0, size.y), 0).r;
-  return depth > 0.0 ? depth * frame.glass_scale : FAR;
-}
-
-const int GLASS_STEPS = 32, GLASS_HALVINGS = 5;
-const float GLASS_STRIDE = 3.0;  // pixels of a step, at least
-// How far behind what begins to hide it a ray may be and still meet it, as a share of the depth.
-const float GLASS_BEHIND = 0.05;
-// How far behind it a ray may begin: glass stands on a floor, whose depth is that of the middle of a pixel.
-const float GLASS_TOUCHES = 0.005;
-
-// A stretch of a ray in the picture: places in pixels and depths' inverses at its ends, or depths of a parallel view.
-struct GlassWay {
-  vec3 start;
-  vec3 end;
-};
-
-vec3 in_picture(vec3 position) {
-  bool is_parallel = view.is_parallel > 0.5;
-  vec2 seen = is_parallel ? position.xy : position.xy / -position.z;
-  return vec3((seen - frame.glass_window.xy) * frame.glass_window.zw, is_parallel ? -position.z : -1.0 / position.z);
-}
-
-float way_depth(vec3 at) {
-  return view.is_parallel > 0.5 ? at.z : 1.0 / max(at.z, 1.0 / FAR);
-}
-
-// from, along: view space, along in view units per unit. reach: FAR without an end.
-GlassWay picture_way(vec3 from, vec3 along, float reach) {
-  GlassWay way;
-  way.start = in_picture(from);
-  bool is_parallel = view.is_parallel > 0.5;
-  if (!is_parallel && along.z > 0.0) reach = min(reach, 0.99 * -from.z / along.z);
-  if (is_parallel && reach >= FAR) reach = 1e4 * frame.glass_size.x / frame.glass_window.z / length(along);
-  if (reach < FAR) {
-    way.end = in_picture(from + along * reach);
-  } else {
-    vec2 seen = along.z < 0.0 ? along.xy / -along.z : along.xy * 1e6;
-    way.end = vec3((seen - frame.glass_window.xy) * frame.glass_window.zw, 0.0);
-  }
-  // no farther than the picture's edge
-  vec2 change = way.end.xy - way.start.xy, room = mix(-way.start.xy, frame.glass_size - way.start.xy, step(0.0, change));
-  vec2 shares = room / mix(change, vec2(1e-9), lessThan(abs(change), vec2(1e-9)));
-  float share = clamp(min(abs(change.x) > 1e-9 ? shares.x : 1.0, abs(change.y) > 1e-9 ? shares.y : 1.0), 0.0, 1.0);
-  way.end = mix(way.start, way.end, share);
-  return way;
-}
-
-// Where a stretch of a ray meets what is in the picture: place in pixels, depth; whether it does. is_open: whether it
-// ends before nothing.
-bool met_in_picture(GlassWay way, out vec3 found, out bool is_open) {
-  float pixels = length(way.end.xy - way.start.xy);
-  int steps = int(clamp(ceil(pixels / GLASS_STRIDE), 1.0, float(GLASS_STEPS)));
-  vec3 low = way.start;
-  float seen = behind_depth_at(low.xy), before = way_depth(low) - seen;
-  if (before < GLASS_TOUCHES * seen) before = min(before, 0.0);
-  for (int i = 1; i <= steps; i++) {
-    vec3 high = mix(way.start, way.end, float(i) / float(steps));
-    seen = behind_depth_at(high.xy);
-    float after = way_depth(high) - seen;
-    if (before <= 0.0 && after > 0.0) {
-      vec3 near = low, far = high;
-      for (int k = 0; k < GLASS_HALVINGS; k++) {
-        vec3 middle = 0.5 * (near + far);
-        if (way_depth(middle) > behind_depth_at(middle.xy)) far = middle; else near = middle;
-      }
-      float depth = behind_depth_at(far.xy);
-      if (way_depth(near) < depth * (1.0 + GLASS_BEHIND)) {
-        found = vec3(far.xy, depth);
-        return true;
-      }
-    }
-    low = high;
-    before = after;
-  }
-  is_open = before <= 0.0;
-  return false;
-}
-
 // A texel that is looked up, over the spread of a ray.
 const float GLASS_TEXEL = 0.7;
 
 // Roughness of a surface that reflects as wide a lobe.
 float roughness_of(float texel) {
   return min(sqrt(texel / (2.0 * GLASS_TEXEL)), 1.0);
-}
-
-// texel: the width that is looked up, pixels.
-vec4 behind_mapped(vec2 place, float texel) {
-  float number = clamp(log2(max(texel, 1.0)), 0.0, float(PICTURE_MAPS - 1));
-  int finer = int(number);
-  vec4 seen = behind_at(finer, place);
-  return number > float(finer) ? mix(seen, behind_at(finer + 1, place), number - float(finer)) : seen;
 }
 
 // A ray along which light is looked for.
@@ -145,13 +47,13 @@ bool light_along(GlassRay ray, bool looks, bool ends, vec3 place, out vec3 light
   float roughness = roughness_of(ray.texel.y);
   bool is_met = false, is_open = false;
   looks = looks && (view.is_parallel > 0.5 || start.z < 0.0) && all(greaterThanEqual(first.xy, vec2(0.0)));
-  if (looks && all(lessThanEqual(first.xy, frame.glass_size))) {
-    GlassWay stretch = picture_way(start, way, ray.reach);
+  if (looks && all(lessThanEqual(first.xy, frame.screen_size))) {
+    PictureWay stretch = picture_way(start, way, ray.reach);
     is_met = met_in_picture(stretch, found, is_open);
     if (is_met) {
-      float away = abs(found.z + start.z) / max(abs(way.z), 0.1 * frame.glass_scale);
+      float away = abs(found.z + start.z) / max(abs(way.z), 0.1 * frame.screen_scale);
       float texel = away > ray.beyond ? ray.texel.y : ray.texel.x, depth = view.is_parallel > 0.5 ? 1.0 : found.z;
-      seen = behind_mapped(found.xy, texel * away * frame.glass_scale / depth * frame.glass_window.w);
+      seen = picture_mapped_at(found.xy, texel * away * frame.screen_scale / depth * frame.screen_window.w);
       roughness = roughness_of(texel);
     } else {
       is_open = is_open && way.z < 0.0 && way_depth(stretch.end) >= 0.5 * FAR;

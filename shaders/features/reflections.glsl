@@ -1,4 +1,4 @@
-// References: Szirmay-Kalos, Aszodi, Lazanyi, Premecz, "Approximate Ray-Tracing on the GPU with Distance Impostors", 2005
+// References: McGuire, Mara, "Efficient GPU Screen-Space Ray Tracing", JCGT 2014; Szirmay-Kalos, Aszodi, Lazanyi, Premecz, "Approximate Ray-Tracing on the GPU with Distance Impostors", 2005
 //             (a ray among the distances that a probe sees); Lagarde, Zanuttini, "Local Image-based Lighting With
 //             Parallax-corrected Cubemaps", 2012 (the place of what is seen, boxes that use a probe; a lobe is narrower
 //             for what is near the surface); Karis, "Real Shading in Unreal Engine 4", 2013 (blurred pictures).
@@ -188,8 +188,8 @@ vec4 probe_mapped_at(vec3 direction, float roughness) {
   return mix(finer, coarser, number - float(low));
 }
 
-void reflections_reflected(inout vec3 light, vec3 direction, float roughness) {
-  if (!(reflecting > 0.0)) return;
+// What a probe shows of what a lobe meets; its opacity. direction: in the view.
+vec4 probe_lobe(vec3 direction, float roughness) {
   float away;
   vec3 toward = probe_direction(normalize(mat3(frame.to_probes) * direction), away);
   float rough = min(roughness * sqrt(max(away, 0.0)), 1.0);
@@ -197,15 +197,66 @@ void reflections_reflected(inout vec3 light, vec3 direction, float roughness) {
   vec4 seen = vec4(0.0);
   if (share < 1.0) seen += (1.0 - share) * probe_mapped_at(toward, rough);
   if (share > 0.0) seen += share * probe_blurred_at(toward, rough);
-  light = mix(light, seen.rgb + (1.0 - seen.a) * sent_reflection(direction, roughness), reflecting);
+  return seen;
 }
 
 void reflections_through(inout vec3 light, vec3 place, vec3 direction, float roughness) {
   if (!(reflecting > 0.0)) return;
   vec3 own = reflecting_place;
   reflecting_place += mat3(frame.to_probes) * place;
-  reflections_reflected(light, direction, roughness);
+  vec4 seen = probe_lobe(direction, roughness);
+  light = mix(light, seen.rgb + (1.0 - seen.a) * sent_reflection(direction, roughness), reflecting);
   reflecting_place = own;
+}
+
+#part world_light, off_screen
+void off_screen_reflected(inout vec3 light, vec3 direction, float roughness) {
+  if (!(reflecting > 0.0)) return;
+  vec4 seen = probe_lobe(direction, roughness);
+  light = mix(light, seen.rgb + (1.0 - seen.a) * sent_reflection(direction, roughness), reflecting);
+}
+
+#part world_light, on_screen
+#include "lib/lobe_rays.glsl"
+#include "lib/picture_march.glsl"
+#include "lib/to_viewer.glsl"
+
+vec3 reflecting_from;  // view space
+vec3 reflecting_normal;
+int reflecting_number;  // of the pixel's samples
+
+// Beside the picture's edge, in shares of it, what it shows gives way to what probes show.
+const float SCREEN_FADES = 0.08;
+
+// What the camera sees of what a ray meets, and its opacity; share: 0 where it meets nothing there.
+vec4 screen_met(vec3 along, float width, out float share) {
+  vec3 found, first = in_picture(reflecting_from);
+  bool is_open;
+  share = 0.0;
+  if (any(lessThan(first.xy, vec2(0.0))) || any(greaterThan(first.xy, frame.screen_size))) return vec4(0.0);
+  if (!met_in_picture(picture_way(reflecting_from, along, FAR), found, is_open)) return vec4(0.0);
+  float depth = view.is_parallel > 0.5 ? 1.0 : found.z;
+  vec3 place = vec3((found.xy / frame.screen_window.zw + frame.screen_window.xy) * depth, -found.z);
+  vec2 beside = min(found.xy, frame.screen_size - found.xy) / frame.screen_size;
+  share = clamp(min(beside.x, beside.y) / SCREEN_FADES, 0.0, 1.0);
+  return picture_mapped_at(found.xy, width * distance(place, reflecting_from) / depth * frame.screen_window.w);
+}
+
+void on_screen_reflected(inout vec3 light, vec3 direction, float roughness) {
+  if (!(reflecting > 0.0)) return;
+  LobeRay ray = lobe_ray(reflecting_normal, to_viewer(reflecting_from), direction, roughness, reflecting_number);
+  float share, rough = min(sqrt(ray.width / PROBE_TEXEL), 1.0);
+  vec4 seen = screen_met(ray.along, ray.width, share);
+  if (share < 1.0) seen = mix(probe_lobe(ray.along, rough), seen, share);
+  light = mix(light, seen.rgb + (1.0 - seen.a) * sent_reflection(ray.along, rough), reflecting);
+}
+
+#part shaded_sample, on_screen
+void on_screen_prepare(inout Shaded s) {
+  ivec2 within = s.texel % int(frame.reflected_sample.y);
+  reflecting_from = eye_position(s.texel, s.mean.depth);
+  reflecting_normal = s.normal;
+  reflecting_number = int(frame.reflected_sample.x) + within.y * int(frame.reflected_sample.y) + within.x;
 }
 
 #part shaded_sample

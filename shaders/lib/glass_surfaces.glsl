@@ -5,7 +5,7 @@
 
 // Boxes and leaves that are looked at for one ray, at most: llvmpipe ends all loops of a shader after 65,535 turns.
 const int GLASS_VISITS = 1500;
-const float FAR = 1e30;
+#include "lib/far.glsl"
 
 // What a ray meets.
 struct GlassMet {

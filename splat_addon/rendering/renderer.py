@@ -23,7 +23,7 @@ from .detail.streamed import Streamed
 from .device import Device
 from .device.interface import Target, texture_bytes
 from .device.interface import Texture as DeviceTexture
-from .features import bounced_light, glass, mirrors, reflections
+from .features import bounced_light, glass, mirrors, reflections, screen
 from .features.outputs import check_samplers
 from .frame import OUTPUTS, Frame
 from .identity import Identified, nearer
@@ -268,8 +268,8 @@ class Renderer:
         return Shared(scene, frame_plan, settings, repeated, before, *seen, light, panes)
 
     def _reflected(self, scene: Scene, camera: Camera, settings: Settings, frame_plan: FramePlan, told: dict):
-        """What the plan's probes and mirror see, and what is behind its glass, drawn if anything in it has changed;
-        None for what it lacks. told: options of `_planned`."""
+        """What the plan's probes and mirror see, and the camera, drawn if anything in it has changed; None for what it
+        lacks. told: options of `_planned`."""
 
         def draw(seen: Scene, camera: Camera, of: Viewers, plain: Settings, known: ProbePictures | None) -> Frame:
             shared = self._planned(seen, camera, plain, viewers=of, known=known, **told)
@@ -279,11 +279,11 @@ class Renderer:
         if probes := found.get(reflections.probes):
             how = told["is_draft"], told["is_repeatable"]
             known = kept.pictures(scene, probes, found[reflections.side], settings, draw, *how)
-        mirror = found.get(mirrors.mirror)
+        mirror, of = found.get(mirrors.mirror), (camera, settings, known, draw)
         return (
             known,
-            kept.mirror(scene, mirror, camera, settings, known, draw) if mirror else None,
-            kept.glass(scene, camera, settings, known, draw) if found.get(glass.glass) else None,
+            kept.mirror(scene, mirror, *of) if mirror else None,
+            kept.screen(scene, *of, found[glass.glass]) if found.get(screen.is_seen) else None,
         )
 
     def _was_drawn(self, scene: Scene) -> None:

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from splat_addon.reference import scenes
-from splat_addon.reference.reflections import map_at, met_directions
+from splat_addon.reference.brdf import dot, unit
+from splat_addon.reference.reflections import map_at, met_directions, met_in_picture
 from splat_addon.rendering import (
     Camera,
     Frame,
@@ -22,14 +23,17 @@ from splat_addon.rendering import (
     make_polygons,
     plan,
 )
+from splat_addon.rendering.features import reflections
 from splat_addon.rendering.plan.programs import describe
 from splat_addon.rendering.probes import drawing, pictures
 from splat_addon.rendering.probes.mirrors import mirror_of
 from splat_addon.rendering.probes.pictures import LEVEL_SIDE, _lobes
 from splat_addon.rendering.probes.places import MAX_PROBES, probes_of
+from splat_addon.rendering.probes.screen import wider_camera
 from splat_addon.rendering.scene.finish import Finish
 from splat_addon.rendering.scene.light_probe import LightProbe
 from splat_addon.rendering.scene.octahedral import Octahedral, bordered
+from splat_addon.rendering.shadows.receivers import Viewers
 
 SETTINGS = Settings(method="quad", reflections=True)
 SKY, RED, GREEN = np.array([(0.1, 0.2, 0.9), (0.8, 0.1, 0.1), (0.1, 0.7, 0.1)])
@@ -176,24 +180,100 @@ def coarse(monkeypatch):
 
 @pytest.fixture
 def seeing(on_device):
-    """seeing(scene, camera) -> its frame, and that of its first probe."""
+    """seeing(scene, camera) -> its frame, that of its first probe, and what the camera sees, with its camera."""
 
     def draw(device, scene, view):
-        renderer = Renderer(device)
-        return renderer.render(scene, view, SETTINGS), renderer.probes._kept[1]._frames[0]
+        renderer, wider = Renderer(device), wider_camera(view)
+        frame = renderer.render(scene, view, SETTINGS)
+        return frame, renderer.probes._kept[1]._frames[0], (wider, renderer.probes._screen[1]._seen)
 
     return lambda *what: on_device(lambda device: draw(device, *what))
 
 
 def test_the_shader_meets_what_its_twin_meets(seeing):
+    """Where rays meet something in the picture it is that, and else what they meet among what the probe sees."""
     view = camera()
     hits, place, direction = rays_of(view)
-    frame, seen = seeing(MIRROR, view)
+    frame, seen, (wider, pixels) = seeing(MIRROR, view)
     ours = frame.color[hits][:, :3]
     met = map_at(seen.color, met_directions(seen, place - (0, 0, HEIGHT), direction))
+    on_screen = met_in_picture(wider, pixels.depth, place, direction)
+    inside = (np.minimum(on_screen, wider.size - on_screen) > 0.09 * np.array(wider.size)).all(axis=1)
+    column, row = on_screen[inside].astype(int).T
+    met[inside] = pixels.color[row, column]
     twin = met[:, :3] + (1 - met[:, 3:]) * SKY
     off = np.abs(ours - twin).max(axis=1)
-    assert np.mean(off < 0.03) > 0.97
+    assert np.mean(off < 0.03) > 0.95 and inside.sum() > 100
+
+
+def striped(count=80, width=0.1):
+    """A floor of stripes along the Y axis, which glow red and green in turn."""
+    edges = (np.arange(count + 1) - count // 2) * width
+    places = [(x, y, 0) for x in edges for y in (-30, 30)]
+    faces = [(2 * k + a, 2 * k + b, 2 * k + c) for k in range(count) for a, b, c in ((0, 2, 3), (0, 3, 1))]
+    made = make_polygons(places, faces, colors=np.tile((0.0, 0, 0, 1), (3 * len(faces), 1)))
+    made = replace(made, materials=np.repeat(np.arange(count, dtype=np.int32) % 2, 6))
+    return PolygonInstance(made, materials=(glowing(RED), glowing(GREEN))), lambda x: np.floor(x / width) % 2 < 1
+
+
+def test_what_the_camera_sees_is_reflected_from_there(render, monkeypatch):
+    """Stripes that are finer than a probe's texels have their places where rays meet the visible floor."""
+    ground, is_red = striped()
+    scene = replace(MIRROR, polygons=[ball(), ground])
+    view = Camera.perspective(look_at((0.4, -4, 2.4), (0, 0, 0.6)), 0.7, (160, 160), near=0.1, far=500)
+    hits, place, direction = rays_of(view)
+    on = render(scene, view, SETTINGS).color[hits][:, :3]
+    monkeypatch.setattr(reflections, "sees_screen", lambda planning: False)
+    off = render(scene, view, SETTINGS).color[hits][:, :3]
+    at = place - direction * (place[:, 2:] / direction[:, 2:])
+    to_view = view.world_to_view()
+    seen = at @ to_view[:3, :3].T + to_view[:3, 3]
+    beside = np.abs(seen[:, :2] / seen[:, 2:]).max(axis=1)
+    visible = (direction[:, 2] < -0.05) & (beside < 0.36) & (seen[:, 2] < 0) & (np.abs(at[:, 0]) < 3.5)
+    true = np.where(is_red(at[:, :1]), RED, GREEN)[visible]
+    wrong = [np.mean(np.abs(one[visible] - true).max(axis=1) > 0.3) for one in (on, off)]
+    assert visible.sum() > 300 and wrong[0] < 0.7 * wrong[1]
+
+
+def test_rays_of_many_samples_fill_a_rough_lobe(render):
+    """Their mean is that of the GGX lobe, over the normals that face the viewer (Heitz 2018)."""
+    view = camera((32, 32))
+    hits, place, _ = rays_of(view)
+    rough = replace(MIRROR, polygons=[ball(Material(roughness=0.4, metallic=1.0)), FLOOR])
+    ours = render(rough, view, replace(SETTINGS, samples=16)).color[hits][:, :3]
+    normal = (place - (0, 0, HEIGHT)) / RADIUS
+    to_eye = unit(view.matrix_world[:3, 3] - place)
+    random = np.random.default_rng(1)
+    total, weights = np.zeros((len(place), 3)), np.zeros((len(place), 1))
+    for _ in range(600):
+        slope = 0.4**2 * np.sqrt(1 / random.uniform(size=len(place)) - 1)
+        turn = random.uniform(0, 2 * np.pi, len(place))
+        u = unit(np.cross(normal, (1.0, 0.1, 0.0)))
+        v = np.cross(normal, u)
+        half = unit(normal + (slope * np.cos(turn))[:, None] * u + (slope * np.sin(turn))[:, None] * v)
+        cosine = dot(half, to_eye)[:, None]
+        out = 2 * cosine * half - to_eye
+        facing = np.maximum(dot(out, normal), 0)[:, None] * np.maximum(cosine, 0) / dot(half, normal)[:, None]
+        total += facing * true_colors(place, out)
+        weights += facing
+    off = np.abs(ours - total / weights)[dot(to_eye, normal) > 0.4].max(axis=1)
+    assert off.mean() < 0.04 and np.quantile(off, 0.95) < 0.12
+
+
+def test_what_the_camera_sees_is_drawn_once_for_a_view_and_not_for_faces_of_panoramas(on_device, monkeypatch, coarse):
+    made, real = [], drawing.ScreenPicture
+    monkeypatch.setattr(drawing, "ScreenPicture", lambda *given: made.append(given) or real(*given))
+    small = camera((8, 8))
+
+    def draw(device):
+        renderer = Renderer(device)
+        for of, seen in ((MIRROR, small), (MIRROR, small), (MIRROR, camera((9, 7))), (Scene(polygons=[FLOOR]), small)):
+            renderer.render(of, seen, replace(SETTINGS, samples=2))
+            yield len(made)
+
+    assert on_device(lambda device: list(draw(device))) == [1, 1, 2, 2]
+    around = Viewers(small, (small, replace(small, matrix_world=look_at((0, 0, 0), (1, 0, 0)))))
+    assert "reflections of what the camera sees" in dict(plan(MIRROR, small, SETTINGS, viewers=around).skipped)
 
 
 def test_a_rough_metal_reflects_the_mean_of_its_lobe(render):
@@ -213,7 +293,7 @@ def test_a_ball_does_not_see_itself_but_its_shadow(seeing, coarse):
         polygons=[ball(), PolygonInstance(scenes.polygons(10)[0].polygons[0].polygons)],
         lights=(Light("sun", energy=3, direction=(0, 0, -1), casts_shadow=True),),
     )
-    _, seen = seeing(sunny, camera())
+    _, seen, _ = seeing(sunny, camera())
     directions = Octahedral(len(seen.color) - 2).directions(*_places(len(seen.color)))
     below, aside = directions[..., 2] < -0.99, np.abs(directions[..., 2] + 0.85) < 0.01
     assert seen.depth[below].min() > 2 * RADIUS

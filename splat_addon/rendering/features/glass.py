@@ -10,7 +10,6 @@ import numpy as np
 from ..plan.graph import Part
 from ..plan.hosts import LIT_HOSTS
 from ..plan.planning import any_of
-from ..probes.flat_pictures import PICTURE_MAPS
 from ..probes.glass import has_glass
 from ..scene import Scene
 from ..scene.glass_surfaces import LEAF, ROW_BITS
@@ -61,13 +60,6 @@ def _to_glass(tile) -> np.ndarray:
     return matrix
 
 
-def _window(tile) -> tuple[float, float, float, float]:
-    """The left and bottom of the picture behind glass, and its pixels per unit, at depth 1 or in the view's units."""
-    seen = tile.shared.glass
-    left, right, bottom, top = (edge * (tile.view.scale if tile.camera.is_orthographic else 1) for edge in seen.window)
-    return left, bottom, seen.size[0] / (right - left), seen.size[1] / (top - bottom)
-
-
 #: Successive samples turn the rays behind rough glass by fractions of a turn that fill it evenly (the golden ratio).
 _TURN = math.pi * (math.sqrt(5) - 1)
 #: The same of their way from the middle of a lamp to its rim: its area is filled evenly beside the turns.
@@ -76,19 +68,14 @@ _ASIDE = math.sqrt(2) - 1
 VALUES = {
     "to_glass": ("mat4", _to_glass),
     "from_glass": ("mat4", lambda tile: np.linalg.inv(_to_glass(tile))),
-    "glass_window": ("vec4", _window),
-    "glass_size": ("vec2", lambda tile: tile.shared.glass.size),
-    "glass_scale": ("float", lambda tile: tile.view.scale),
     "glass_aside": ("float", lambda tile: math.sqrt(_ASIDE * tile.camera.sample % 1)),
     "glass_turn": ("float", lambda tile: _TURN * tile.camera.sample % (2 * math.pi)),
     "glass_leaves": ("float", lambda tile: tile.shared.glass_surfaces.leaves),
 }
 INPUTS = {
-    "glass_picture": lambda tile: tile.resources.kept(tile.shared.glass, tile.shared.glass.behind),
     "glass_surfaces": lambda tile: tile.resources.kept(tile.shared.glass_surfaces, tile.shared.glass_surfaces.texels),
 }
 CONSTANTS = {
-    "PICTURE_MAPS": PICTURE_MAPS,
     "GLASS_LEAF": LEAF,
     "GLASS_ROW_BITS": ROW_BITS,
 }
@@ -110,5 +97,5 @@ def is_present(planning) -> bool:
 def parts(planning, p):
     if p.host in LIT_HOSTS and planning.model.has_finish:
         words = tuple(word for word, of in (("see_through", glass), ("glass_shadows", shadows)) if planning.find(of))
-        behind = ("glass_picture",) if planning.find(glass) else ()
+        behind = ("screen_picture",) if planning.find(glass) else ()
         yield Part("glass", words, inputs=(*behind, "glass_surfaces"))

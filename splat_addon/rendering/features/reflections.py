@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Glossy surfaces reflect what stands around them: probes see it, and rays are traced among what they see (Lagarde and
-Zanuttini 2012; Szirmay-Kalos et al. 2005)."""
+"""Glossy surfaces reflect what stands around them: rays are followed in what the camera sees (McGuire and Mara 2014),
+and else among what probes see (Lagarde and Zanuttini 2012; Szirmay-Kalos et al. 2005)."""
 
 from __future__ import annotations
 
@@ -8,8 +8,10 @@ import numpy as np
 
 from ..plan.graph import Part
 from ..plan.hosts import LIT_HOSTS
+from ..plan.planning import any_of
 from ..probes.pictures import HEADER, MAPS, side_of
 from ..probes.places import MAX_PROBES, probes_of
+from .glass import glass
 
 
 def probes(planning):
@@ -25,6 +27,21 @@ def probes(planning):
     if without:
         planning.skip(f"reflections of {without} objects", f"there is room for {MAX_PROBES} probes")
     return found
+
+
+def sees_screen(planning) -> bool:
+    """Whether reflections show what the camera sees, where rays meet that."""
+    if planning.probes or not planning.shown or not planning.find(probes):
+        return False
+    what, kinds = "reflections of what the camera sees", planning.scene.table.kinds
+    if planning.find(glass) and any_of(lambda placed: placed.is_seen != placed.is_reflected, kinds):
+        planning.skip(what, "through glass, more is seen than is reflected")
+        return False
+    turned = planning.camera.matrix_world[:3, :3].tobytes()
+    if any(one.matrix_world[:3, :3].tobytes() != turned for one in planning.viewers.lamps):
+        planning.skip(what, "the borders of a panorama's faces would show")
+        return False
+    return True
 
 
 def side(planning) -> int:
@@ -55,6 +72,8 @@ VALUES = {
     "probe_count": ("float", lambda tile: len(tile.plan.find(probes))),
     "probe_side": ("float", lambda tile: tile.shared.probes.side),
     "to_probes": ("mat4", _to_probes),
+    # the picture's first sample of a pixel, and how many there are along its edges
+    "reflected_sample": ("vec2", lambda tile: (tile.camera.sample * tile.plan.samples**2, tile.plan.samples)),
 }
 INPUTS = {"probes": lambda tile: tile.resources.kept(tile.shared.probes, tile.shared.probes.texels)}
 CONSTANTS = {"PROBE_HEADER": HEADER, "PROBE_MAPS": MAPS}
@@ -64,7 +83,8 @@ def passes(planning):
     """None of its own: probes are drawn before the frame, and only when the scene has changed."""
     if planning.shown and (found := planning.find(probes)):
         planning.find(side)
-        planning.has("REFLECTIONS", f"{len(found)} probes see what glossy objects reflect")
+        also = " where the camera does not" if planning.find(sees_screen) else ""
+        planning.has("REFLECTIONS", f"{len(found)} probes see what glossy objects reflect{also}")
     return ()
 
 
@@ -74,4 +94,6 @@ def is_present(planning) -> bool:
 
 def parts(planning, p):
     if p.host in LIT_HOSTS and planning.model.has_finish:
-        yield Part("reflections", inputs=("probes",))
+        sees = planning.find(sees_screen)
+        words, pictures = (("on_screen",), ("screen_picture",)) if sees else (("off_screen",), ())
+        yield Part("reflections", words, inputs=("probes", *pictures))

@@ -14,9 +14,9 @@ from ..detail.history import NOTHING, History
 from ..device.interface import Pipeline, Texture, texture_bytes
 from ..identity import Identities
 from ..passes.decisions import shadows
-from ..probes.glass import GlassPicture
 from ..probes.mirrors import MirrorPicture
 from ..probes.pictures import ProbePictures
+from ..probes.screen import ScreenPicture
 from ..sample_views import SampleViews, clip_around
 from ..scene import Instance, Scene
 from ..scene.camera import Camera
@@ -36,8 +36,8 @@ _MOST_BYTES = 1 << 26
 
 class Shared:
     """A scene, the plan of its picture, and what depends on nothing else. samples: of the picture that are drawn one
-    right after the other. history: as of `plan`. probes, mirror, glass: what the plan's probes see,
-    and its mirror, and what is behind its glass, if it has any. bounced: the scene's light, and glass_surfaces: its
+    right after the other. history: as of `plan`. probes, mirror, screen: what the plan's probes see,
+    and its mirror, and the camera, if rays are followed in that. bounced: the scene's light, and glass_surfaces: its
     glass, if the plan needs them."""
 
     def __init__(
@@ -49,12 +49,12 @@ class Shared:
         history: History = NOTHING,
         probes: ProbePictures | None = None,
         mirror: MirrorPicture | None = None,
-        glass: GlassPicture | None = None,
+        screen: ScreenPicture | None = None,
         bounced: BouncedLight | None = None,
         glass_surfaces: GlassSurfaces | None = None,
     ):
         self.scene, self.plan, self.settings, self.samples, self.history = scene, plan, settings, samples, history
-        self.probes, self.mirror, self.glass, self.bounced = probes, mirror, glass, bounced
+        self.probes, self.mirror, self.screen, self.bounced = probes, mirror, screen, bounced
         self.glass_surfaces = glass_surfaces
         self._kept: dict[Hashable, object] = {}
         self._tables: dict[tuple[bytes, bytes], Texture] = {}

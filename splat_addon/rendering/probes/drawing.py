@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws the pictures of a scene's probes and mirror and of what is behind its glass, and keeps them as long as nothing
-in the scene changes."""
+"""Draws the pictures of a scene's probes and mirror and of what the camera sees, and keeps them as long as nothing in
+the scene changes."""
 
 from __future__ import annotations
 
@@ -19,10 +19,11 @@ from ..scene.octahedral import Octahedral
 from ..scene.panorama import Panorama
 from ..settings import Settings
 from ..shadows.receivers import Viewers
-from .glass import GlassApart, GlassPicture, behind_camera, surfaces_of
+from .glass import GlassApart, surfaces_of
 from .mirrors import Mirror, MirrorPicture, mirrored_camera
 from .pictures import ProbePictures
 from .places import Probe
+from .screen import ScreenPicture, wider_camera
 
 #: (what a probe sees, a face's camera, the cameras that its shadow maps serve, settings, what probes saw) -> Frame
 Draw = Callable[[Scene, Camera, Viewers, Settings, ProbePictures | None], Frame]
@@ -38,7 +39,7 @@ class Probes:
         self._kept: tuple[tuple, ProbePictures, bool] | None = None
         self._mirrored: tuple[tuple, MirrorPicture] | None = None
         self._surfaces: tuple[tuple, GlassSurfaces] | None = None
-        self._behind: tuple[tuple, GlassPicture] | None = None
+        self._screen: tuple[tuple, ScreenPicture] | None = None
         self.apart = GlassApart()
 
     def pictures(
@@ -88,18 +89,20 @@ class Probes:
             self._mirrored = made_from, MirrorPicture(mirror, behind, seen)
         return self._mirrored[1]
 
-    def glass(
-        self, scene: Scene, camera: Camera, settings: Settings, known: ProbePictures | None, draw: Draw
-    ) -> GlassPicture:
-        """What a camera sees behind glass: the same object as long as both stay. known: what the probes see."""
+    def screen(
+        self, scene: Scene, camera: Camera, settings: Settings, known: ProbePictures | None, draw: Draw,
+        is_behind_glass: bool,
+    ) -> ScreenPicture:  # fmt: skip
+        """What a camera sees: the same object as long as both stay. known: what the probes see. is_behind_glass:
+        whether it is seen through glass; otherwise only what reflections show is in it."""
         plain = replace(_reflecting(_plain(settings), known), supersampling=2)
-        behind, of_scene = behind_camera(camera), contents(scene)
-        view = behind.matrix_world.tobytes(), behind.window, behind.size, behind.near, behind.far
-        made_from = view, behind.is_orthographic, plain, known, of_scene
-        if self._behind is None or self._behind[0] != made_from:
-            seen = draw(self.apart.without(scene), behind, Viewers(behind, (behind,)), plain, known)
-            self._behind = made_from, GlassPicture(behind, seen)
-        return self._behind[1]
+        wider, of_scene = wider_camera(camera), contents(scene)
+        view = wider.matrix_world.tobytes(), wider.window, wider.size, wider.near, wider.far
+        made_from = view, wider.is_orthographic, plain, known, of_scene, settings.refraction, is_behind_glass
+        if self._screen is None or self._screen[0] != made_from:
+            of = self.apart.without(scene) if is_behind_glass else self._seen(scene, (), settings)
+            self._screen = made_from, ScreenPicture(wider, draw(of, wider, Viewers(wider, (wider,)), plain, known))
+        return self._screen[1]
 
     def surfaces(self, scene: Scene) -> GlassSurfaces:
         """The scene's glass: the same object as long as the scene is."""
@@ -114,7 +117,7 @@ class Probes:
         return self.apart.without(seen) if settings.refraction else seen
 
     def forget(self) -> None:
-        self._kept = self._mirrored = self._surfaces = self._behind = None
+        self._kept = self._mirrored = self._surfaces = self._screen = None
 
 
 def _plain(settings: Settings) -> Settings:

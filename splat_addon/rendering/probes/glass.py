@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What stands behind glass, as a picture, and the surfaces of glass, through which light is followed to it."""
+"""The surfaces of glass, through which light is followed, and scenes without them."""
 
 from __future__ import annotations
 
@@ -8,18 +8,10 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from ..frame import Frame
 from ..scene import Placed, Scene
-from ..scene.camera import Camera
 from ..scene.glass_surfaces import GlassSurfaces
 from ..scene.material import Material
 from ..scene.table import InstanceTable
-from .flat_pictures import picture_texels
-
-#: Beside the frame's picture, a share of it, in which bent rays may end.
-BESIDE = 0.125
-#: Pixels along an edge of what is seen behind glass.
-MOST_PIXELS = 4096
 
 
 def is_glass(material: Material) -> bool:
@@ -85,30 +77,6 @@ class GlassApart:
             is_mixed = which.any() and not which.all()
             known[slots] = (shape.take(which), shape.take(~which)) if is_mixed else bool(which.any())
         return known[slots]
-
-
-def behind_camera(camera: Camera) -> Camera:
-    """The camera with a window that is larger by `BESIDE`."""
-    left, right, bottom, top = camera.whole_pixels()
-    beside = [int(np.ceil(edge * BESIDE)) for edge in camera.size]
-    across, up = (right - left) / camera.size[0] * beside[0], (top - bottom) / camera.size[1] * beside[1]
-    size = tuple(edge + 2 * more for edge, more in zip(camera.size, beside, strict=True))
-    scale = min(MOST_PIXELS / max(size), 1.0)
-    size = tuple(max(int(np.ceil(edge * scale)), 1) for edge in size)
-    window = left - across, right + across, bottom - up, top + up
-    made = Camera(camera.matrix_world, window, size, camera.near, camera.far)
-    return replace(made, is_orthographic=camera.is_orthographic)
-
-
-class GlassPicture:
-    """What is seen behind glass. seen: by the camera, without glass."""
-
-    def __init__(self, camera: Camera, seen: Frame):
-        self.window, self.size, self._seen = camera.window, camera.size, seen
-
-    def behind(self) -> np.ndarray:
-        """(h, w, 4) float32, as of `picture_texels`."""
-        return picture_texels(self._seen.color, self._seen.depth)
 
 
 def surfaces_of(table: InstanceTable) -> GlassSurfaces:

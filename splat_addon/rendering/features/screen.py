@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the camera sees, drawn before the frame: rays of reflections and glass are followed in it (McGuire and Mara
+2014)."""
+
+from __future__ import annotations
+
+from .glass import glass
+from .reflections import sees_screen
+
+
+def is_seen(planning) -> bool:
+    """Whether rays are followed in what the camera sees."""
+    return planning.find(glass) or planning.find(sees_screen)
+
+
+def _window(tile) -> tuple[float, float, float, float]:
+    """The left and bottom of the picture, and its pixels per unit, at depth 1 or in the view's units."""
+    seen = tile.shared.screen
+    left, right, bottom, top = (edge * (tile.view.scale if tile.camera.is_orthographic else 1) for edge in seen.window)
+    return left, bottom, seen.size[0] / (right - left), seen.size[1] / (top - bottom)
+
+
+VALUES = {
+    "screen_window": ("vec4", _window),
+    "screen_size": ("vec2", lambda tile: tile.shared.screen.size),
+    "screen_scale": ("float", lambda tile: tile.view.scale),
+}
+INPUTS = {"screen_picture": lambda tile: tile.resources.kept(tile.shared.screen, tile.shared.screen.texels)}
+
+
+def passes(planning):
+    """None of its own: the picture is drawn before the frame."""
+    planning.find(is_seen)
+    return ()
