@@ -43,6 +43,7 @@ from splat_addon.rendering import (
 from splat_addon.rendering.frame import NUMBERED
 from splat_addon.rendering.methods import METHODS, get_method
 from splat_addon.rendering.plan.frame_plan import FILTER_MARGIN
+from splat_addon.rendering.probes import pictures as probe_pictures
 from splat_addon.rendering.scene.sun_apart import sun_apart
 from splat_addon.rendering.settings import OUTPUTS
 from splat_addon.rendering.shading_models import SHADING_MODELS
@@ -475,7 +476,9 @@ SHOTS = {
 
 
 @pytest.mark.parametrize("name", SHOTS)
-def test_picture_is_the_same_on_every_device(name, render, on_both_devices):
+def test_picture_is_the_same_on_every_device(name, render, on_both_devices, monkeypatch):
+    # a quarter of the texels of what mirrors and glass see: drawing these takes most of the time of such a picture
+    monkeypatch.setattr(probe_pictures, "SHARP_SIDE", probe_pictures.BLUNT_SIDE)
     scene, camera, settings, *_ = SHOTS[name]()
 
     def draw():

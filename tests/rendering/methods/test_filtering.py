@@ -9,7 +9,7 @@ import pytest
 
 from splat_addon.reference import render_exact, scenes
 from splat_addon.reference.metrics import psnr, srgb
-from splat_addon.rendering import Camera, Settings
+from splat_addon.rendering import Camera, Renderer, Settings
 
 SIZE = (128, 128)
 #: Outlines and letters take a smaller share of a larger picture: the bounds of scenes with them are those of this size.
@@ -45,27 +45,36 @@ def exact(name):
     return render_exact(*made(name), FLAT, samples=4, pixel_filter="gaussian")
 
 
+@pytest.fixture(scope="module")
+def shown(on_device):
+    """shown(name, method) -> Frame, drawn once."""
+
+    @cache
+    def draw(name, method):
+        settings = replace(FLAT, method=method)
+        return on_device(lambda device: Renderer(device).render(*made(name), settings))
+
+    return draw
+
+
 @pytest.mark.parametrize("name", SCENES)
-def test_mip_is_above_39_db_and_6_above_the_papers(name, render):
+def test_mip_is_above_39_db_and_6_above_the_papers(name, shown):
     """The promise is 36 dB; the test holds what is reached, so that an error in a few rows of pixels is noticed."""
-    scene, camera = made(name)
-    frames = {m: render(scene, camera, replace(FLAT, method=m)) for m in ("mip", "raycast", "homogeneous")}
-    true = {method: psnr(frame.color, exact(name).color) for method, frame in frames.items()}
+    true = {m: psnr(shown(name, m).color, exact(name).color) for m in ("mip", "raycast", "homogeneous")}
     assert true["mip"] > 39.5, true
     assert true["mip"] > max(true["raycast"], true["homogeneous"]) + 6, true
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_mips_mean_flip_is_at_most_0_016(name, render):
+def test_mips_mean_flip_is_at_most_0_016(name, shown):
     flip_evaluator = pytest.importorskip("flip_evaluator", reason="FLIP is measured outside of a Blender program")
-    frame = render(*made(name), replace(FLAT, method="mip"))
-    truth, picture = (np.float32(srgb(f.color[..., :3])) for f in (exact(name), frame))
+    truth, picture = (np.float32(srgb(f.color[..., :3])) for f in (exact(name), shown(name, "mip")))
     assert flip_evaluator.evaluate(truth, picture, "LDR", applyMagma=False)[1] <= 0.016
 
 
 @pytest.mark.parametrize("name", SCENES)
-def test_mip_leaves_no_hole_where_the_surface_covers_the_filter(name, render):
-    frame = render(*made(name), replace(FLAT, method="mip"))
+def test_mip_leaves_no_hole_where_the_surface_covers_the_filter(name, shown):
+    frame = shown(name, "mip")
     assert np.isfinite(frame.color).all()
     assert not np.count_nonzero((exact(name).coverage > 0.999) & (frame.coverage < 0.95))
 
