@@ -68,9 +68,11 @@ def run(options, report) -> None:
                 report.say(f"Skipped, because no small disk can be mounted here: {why_not}. Root can, on Linux.")
                 return
             save_scene(scene, options.resolution)
-            rows = (row for case in CASES for row in runs(case, scene, disk, options.shares, wrong))
+            # each run starts Blender
+            cases = CASES[::3] if options.quick else CASES
+            rows = (row for case in cases for row in runs(case, scene, disk, options.shares, wrong))
             report.table(COLUMNS, rows)
-    count = len(CASES) * len(options.shares)
+    count = len(cases) * len(options.shares)
     report.say(f"{len(wrong)} of {count} runs exited with 0, changed a file, or left one.")
     if wrong:
         raise Problem(f"On a full disk, these commands did not do as they should: {'; '.join(wrong)}.")

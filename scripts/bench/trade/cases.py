@@ -139,7 +139,7 @@ CASES = {
         Case("sub-pixel sphere", "300,000 splats", _sphere(300_000), True),
         Case("armadillo", "converted at 256, 91,000 splats, two colours", _whole_armadillo, True, more="formats"),
         Case("scan", "a range map, as bare points, two colours", _scan, True),
-        Case("crowd", "36 instances of the tori", lambda view: crowd(view, view.over(60_000)), True),
+        Case("crowd", "36 instances of the tori", lambda view: crowd(view, view.over(15_000)), True),
         Case("lit armadillo", "the same under a sun", _whole_armadillo, shading="principled"),
         Case("near armadillo", "its head, lit: splats larger than pixels", _near_armadillo, shading="principled"),
         Case("orthographic torus", "the tori without perspective", _orthographic_torus),

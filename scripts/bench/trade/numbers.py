@@ -43,9 +43,9 @@ def shots(view: View) -> dict[str, tuple[Callable, Settings]]:
     return {
         "sub-pixel sphere": (lambda: CASES["sub-pixel sphere"].build(view), _FLAT),
         "tori in the sun": (lambda: lit(*CASES["torus"].build(view)), _BASE),
-        "transparent spheres": (lambda: scenes.transparent_spheres(view.over(2000), size=view.picture), _BASE),
+        "transparent spheres": (lambda: scenes.transparent_spheres(view.over(1000), size=view.picture), _BASE),
         "scan": (lambda: CASES["scan"].build(view), _FLAT),
-        "a crowd of 36": (lambda: lit(*crowd(view, view.over(60_000))), _BASE),
+        "a crowd of 36": (lambda: lit(*crowd(view, view.over(30_000))), _BASE),
     }
 
 
