@@ -7,8 +7,8 @@ import trimesh
 from hypothesis import given
 from hypothesis import strategies as st
 
-from splat_addon.sampling import TriangleMesh
-from splat_addon.sampling.mesh.survey import signed_volumes, survey
+from splat_addon.sampling import TriangleMesh, drop_unusable
+from splat_addon.sampling.mesh.survey import _survey, signed_volumes, survey
 from splat_addon.sampling.mesh.triangle_mesh import triangle_chunks
 
 #: Few places, so that triangles collapse, repeat and close by accident.
@@ -84,3 +84,13 @@ def test_volumes_add_up_to_that_of_the_surface_wherever_it_is():
 def test_an_open_surface_has_no_volumes():
     ball = trimesh.creation.icosphere(1)
     assert survey(TriangleMesh(ball.vertices, ball.faces[1:])).volumes is None
+
+
+@given(TRIANGLES)
+def test_what_remains_without_unusable_triangles_is_known_as_if_it_were_surveyed(triangles):
+    left, dropped = drop_unusable(mesh_of(triangles))
+    known, found = left.surveyed, _survey(left)
+    assert len(known.flat) == 0 and sum(dropped.values()) == len(triangles) - len(left)
+    assert known.is_closed == found.is_closed and known.facing_area == pytest.approx(found.facing_area, abs=1e-12)
+    assert (known.is_used == found.is_used).all() and set(found.suspects) <= set(known.suspects)
+    assert known.volumes is found.volumes is None or known.volumes.tolist() == found.volumes.tolist()

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from .survey import survey
+from .survey import survey, survey_without
 from .triangle_mesh import TriangleMesh
 
 #: Coordinates beyond this make squared areas overflow float32; no scene is that large, but broken files are.
@@ -45,12 +45,15 @@ def _usable(mesh: TriangleMesh) -> tuple[TriangleMesh, np.ndarray, dict[str, int
     repeating = _repeating(mesh, np.setdiff1d(found.suspects, pinched))
     collinear = np.setdiff1d(found.flat, np.concatenate([pinched, repeating]))
     bad = {"with a repeated vertex": pinched, "that repeat another": repeating, "of zero area": collinear}
+    whole = mesh
     mesh, rows = _without(bad, mesh, rows, dropped)
-    if len(np.setdiff1d(repeating, found.flat)):
-        found = survey(mesh)
+    if mesh is not whole:
+        found = survey_without(whole, np.concatenate(list(bad.values())), mesh)
     if not found.is_used.all():
         new_index = np.cumsum(found.is_used) - 1
         mesh = replace(mesh, positions=mesh.positions[found.is_used], triangles=new_index[mesh.triangles])
+        found = replace(found, is_used=np.ones(len(mesh.positions), bool))
+    object.__setattr__(mesh, "surveyed", found)
     object.__setattr__(mesh, "known_usable", True)
     object.__setattr__(mesh, "facing_area", found.facing_area)
     return mesh, rows, dropped

@@ -20,7 +20,7 @@ class Survey:
     facing_area: total area, see `TriangleMesh`.
     suspects: (m,) intp, ascending: all triangles that may have the same three positions as another, in any order.
     is_used: (V,) bool: whether a triangle of non-zero area uses the vertex.
-    is_closed: whether the boundary of the triangles vanishes, with coincident vertices merged.
+    boundary: sum of `boundary_weights`, 0 if the boundary of the triangles vanishes, with coincident vertices merged.
     volumes: (T,) float64 from `signed_volumes`; None if the mesh is open.
     """
 
@@ -28,8 +28,12 @@ class Survey:
     suspects: np.ndarray
     facing_area: float
     is_used: np.ndarray
-    is_closed: bool
+    boundary: np.uint64
     volumes: np.ndarray | None
+
+    @property
+    def is_closed(self) -> bool:
+        return bool(self.boundary == 0)
 
 
 def survey(mesh: TriangleMesh) -> Survey:
@@ -68,9 +72,26 @@ def _survey(mesh: TriangleMesh) -> Survey:
                     continue
                 indices[:, empty] = indices[:, widest, None]
             is_used[indices] = True
-    is_closed = bool(boundary == 0)
     suspects = _suspects(sums, mesh)
-    return Survey(np.concatenate(flat), suspects, facing_area, is_used, is_closed, volumes if is_closed else None)
+    return Survey(np.concatenate(flat), suspects, facing_area, is_used, boundary, None if boundary else volumes)
+
+
+def survey_without(mesh: TriangleMesh, those: np.ndarray, left: TriangleMesh) -> Survey:
+    """The survey of `left`, which is `mesh` without some triangles, from that of `mesh`: only the dropped are looked at
+    again. those: (k,) their indices, without repeats, among them all of zero area."""
+    found, is_kept = survey(mesh), np.ones(len(mesh), bool)
+    is_kept[those] = False
+    indices = corner_indices(mesh.triangles[those])
+    area = float(np.abs(doubled_areas(corners_at(mesh.positions.T, indices))).max(axis=0).sum()) / 2
+    with np.errstate(over="ignore"):
+        boundary = found.boundary - boundary_weights(*mesh.places.take(indices)).sum(dtype=np.uint64)
+    is_used = np.zeros(len(left.positions), bool)
+    is_used[left.triangles] = True
+    suspects = np.cumsum(is_kept)[found.suspects[is_kept[found.suspects]]] - 1
+    volumes = None
+    if not boundary:
+        volumes = signed_volumes(left.positions, left.triangles) if found.volumes is None else found.volumes[is_kept]
+    return Survey(np.empty(0, np.intp), suspects, found.facing_area - area, is_used, boundary, volumes)
 
 
 def boundary_weights(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
