@@ -31,7 +31,7 @@ def refit_hierarchy(hierarchy: Hierarchy, surfels: Surfels) -> Hierarchy:
         raise ValueError(f"A hierarchy of {hierarchy.surfels:,} surfels cannot be refitted to {len(surfels):,}.")
     if not len(hierarchy):
         return hierarchy
-    entries, counts = _by_level(hierarchy)
+    entries, counts = by_level(hierarchy)
     current, rows = Leaves(surfels), entries[0]
     worst = None
     made, errors, places = [], [], [current.geometry]
@@ -59,7 +59,7 @@ def refit_hierarchy(hierarchy: Hierarchy, surfels: Surfels) -> Hierarchy:
     return replace(hierarchy, nodes=concatenate(made), errors=every, blocks=blocks)
 
 
-def _by_level(hierarchy: Hierarchy) -> tuple[list[np.ndarray], list[np.ndarray]]:
+def by_level(hierarchy: Hierarchy) -> tuple[list[np.ndarray], list[np.ndarray]]:
     """The entries of each level, the surfels' first, and the numbers of children above it: as `depth_first` does."""
     ends = np.cumsum(hierarchy.counts)
     entries, counts, size, done = [hierarchy.entries[: hierarchy.surfels]], [], hierarchy.surfels, 0

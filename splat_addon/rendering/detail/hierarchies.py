@@ -10,7 +10,7 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from ...hierarchy import Hierarchy, Told, build_hierarchy, has_extremes, refit_hierarchy
+from ...hierarchy import Hierarchy, Told, build_hierarchy, has_extremes, refit_hierarchy, without_lines
 from ...surfels import Surfels
 from ..scene import Scene
 
@@ -34,12 +34,18 @@ def hierarchy_of(surfels: Surfels) -> Hierarchy:
 
 def make_hierarchy(surfels: Surfels, before: Hierarchy | None, told: Told | None = None) -> Hierarchy:
     """A hierarchy fitted from the one that the surfels had before they moved, or built if there is none or it fits
-    badly. told: as in `build_hierarchy`."""
-    if before is not None and not has_extremes(surfels):
-        fitted = refit_hierarchy(before, surfels)
-        if fitted.looseness(surfels) <= _WORN * fitted.built_looseness:
-            return fitted
-    return build_hierarchy(surfels, told)
+    badly. Small sets only have one if many instances are drawn together. told: as in `build_hierarchy`."""
+    made = _fitted(before, surfels)
+    made = build_hierarchy(surfels, told) if made is None else made
+    return without_lines(made, surfels) if len(surfels) < LEAST_SURFELS else made
+
+
+def _fitted(before: Hierarchy | None, surfels: Surfels) -> Hierarchy | None:
+    """The hierarchy that surfels had before they moved, fitted to them; None if it does not fit."""
+    if before is None or has_extremes(surfels):
+        return None
+    fitted = refit_hierarchy(before, surfels)
+    return fitted if fitted.looseness(surfels) <= _WORN * fitted.built_looseness else None
 
 
 def built_hierarchy(surfels: Surfels) -> Hierarchy | None:

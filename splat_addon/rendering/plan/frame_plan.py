@@ -83,7 +83,7 @@ class FramePlan:
     @cached_property
     def may_repeat(self) -> bool:
         """Whether the same calls may draw all samples from one place: no loop looks when it ends, and no textures are
-        swapped. A pass that reads what it drew has them drawn anew."""
+        swapped. If a pass reads what it drew, they are not kept."""
         return not any(isinstance(step, Loop) or step.all("updates") for step in self.steps)
 
     @cached_property
