@@ -63,6 +63,12 @@ def test_no_choice_is_better_than_a_preset_in_all_respects(preset):
     assert not all(map(is_dominated, FILTERS))
 
 
+@pytest.mark.parametrize(("page", "head"), [("methods", "method"), ("numerics", "formats")])
+def test_other_pages_tables_name_methods(page, head):
+    (table,) = (each for each in tables(f"evidence/{page}.md") if each[0][0] == head)
+    assert len(table) > 3 and all(method_of(row[0]) for row in table[1:])
+
+
 def column(head: str, name: str) -> set[str]:
     """The cells of a column of the page's table that begins with a head."""
     (table,) = (each for each in tables("evidence/trade.md") if each[0][0] == head)

@@ -108,6 +108,19 @@ def made(rows: list[dict]) -> dict[str, Table]:
     return found
 
 
+def further(renderer: Renderer, options, rows: list[dict], report) -> None:
+    """Say what `sampling/density_error.py` has in `MEASURED`: under the filter where it is larger, the geometric mean
+    over the models, and the worst."""
+    normal = [row for row in rows if row["reduction"] == "normal"]
+    larger = {pixels: [_larger(row) for row in normal if row["pixels"] == pixels] for pixels in PIXELS}
+    found = {pixels: (round(geometric_mean(flips), 4), max(flips)) for pixels, flips in larger.items() if flips}
+    report.say(f"Typical and worst FLIP of surfels by pixels between them: {found}.")
+
+
+def _larger(row: dict) -> float:
+    return max(row[f"flip_representation_{kind}"] for kind in _OF_FILTER)
+
+
 HEAD = [
     "surfels, relative",
     *(
