@@ -1,17 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How far surfels are from their mesh at a density, and the density for an error, from what was measured.
 
-`MEASURED` is the representation error of five meshes (a drilled plate, fandisk, a truck, spot, the armadillo) that are
-less than a hundred pixels tall: the mean FLIP over the pixels that the mesh touches, between exact pictures of the
-surfels and of the mesh, under the pixel filter where it is larger. Measured by `bench.py trade --parts densities --size
-96`. Typical is the geometric mean of the meshes; the worst is the armadillo, whose detail is finer than a pixel. A mesh
-that is larger in the picture has less detail a pixel, and is closer.
+`MEASURED` is the representation error of five meshes (a drilled plate, fandisk, a truck, spot, the armadillo) in
+pictures of `SIZE` pixels along each side: the mean FLIP over the pixels that the mesh touches, between exact pictures
+of the surfels and of the mesh, under the pixel filter where it is larger. `bench.py trade --pages` writes it. Typical
+is the geometric mean of the meshes; the worst is the armadillo, whose detail is finer than a pixel. A mesh that is
+larger in the picture has less detail a pixel, and is closer.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+# measured
+SIZE = 96
 #: Pixels between surfels -> (typical, worst) FLIP.
 MEASURED = {
     0.375: (0.0175, 0.0389),
@@ -22,6 +24,7 @@ MEASURED = {
     2.0: (0.0703, 0.2826),
     3.0: (0.1180, 0.4672),
 }
+# end
 
 _PIXELS = np.array(list(MEASURED))
 _TYPICAL, _WORST = np.array(list(MEASURED.values())).T

@@ -9,7 +9,7 @@ from splat_addon.sampling import LARGEST_ERROR, LEAST_ERROR, error_at, pixels_fo
 from splat_addon.sampling.density_error import MEASURED
 
 
-@pytest.mark.parametrize("error", [LEAST_ERROR, 0.02, 0.05, LARGEST_ERROR])
+@pytest.mark.parametrize("error", [LEAST_ERROR, 1.5 * LEAST_ERROR, LARGEST_ERROR / 2, LARGEST_ERROR])
 def test_the_density_for_an_error_has_that_error(error):
     typical, worst = error_at(pixels_for(error))
     assert typical == pytest.approx(error) and worst > typical

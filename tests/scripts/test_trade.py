@@ -104,6 +104,16 @@ def test_the_pages_have_a_place_for_all_that_is_measured():
     assert places == {"run", *(name for part in PARTS.values() for name in part.made([]))}
 
 
+def test_the_error_of_a_density_is_written_where_the_product_reads_it():
+    from bench.trade.densities import _KNOWN, with_measured
+    from splat_addon.sampling.density_error import MEASURED, SIZE
+
+    text = _KNOWN.read_text(encoding="utf-8")
+    assert with_measured(text, SIZE, MEASURED) == text
+    assert "SIZE = 64\n" in (other := with_measured(text, 64, {0.5: (0.25, 0.125)}))
+    assert "MEASURED = {\n    0.5: (0.2500, 0.1250),\n}\n" in other and len(other) < len(text)
+
+
 def test_what_is_measured_is_written_between_the_marks_of_a_page(tmp_path):
     from environment import Problem
     from measuring.pages import fill

@@ -28,7 +28,7 @@ from splat_addon.rendering import Renderer, open_device
 DEVICES = ("standalone", "blender")
 QUICK = {"size": 32, "turns": 2, "samples": 3, "seconds": 0.0, "choices": "methods"}
 
-#: Each has `units`, name -> what measures rows, and `made`, the tables of all rows; some do `further` things with them.
+#: Each has `units`, name -> what measures rows, and `made`, the tables of all rows; one has `plots`.
 PARTS = {
     "methods": methods,
     "numbers": numbers,
@@ -67,6 +67,7 @@ def run(options, report) -> None:
         texts = {name: each.text if isinstance(each, Table) else each for name, each in pages.items()}
         for page in fill(ROOT / "docs", texts):
             report.say(f"Wrote {page.relative_to(ROOT)}")
+        densities.write(options, kept.of_part("densities"))
 
 
 def run_part(name: str, renderer: Renderer, options, report, kept: Kept) -> dict[str, Table | str]:
@@ -89,8 +90,8 @@ def run_part(name: str, renderer: Renderer, options, report, kept: Kept) -> dict
     for table in made.values():
         if isinstance(table, Table) and table.lines:
             report.table(table.columns, table.lines, table.about)
-    if hasattr(part, "further"):
-        part.further(renderer, options, rows, report)
+    if hasattr(part, "plots"):
+        part.plots(renderer, options, rows, report)
     taken = f"{perf_counter() - begun:.0f} s, {process_time() - worked:.0f} s of processor time"
     report.say(f"{name}: {taken}.")
     return made

@@ -9,6 +9,7 @@ the mesh touches, so that it does not depend on how much of the picture it fills
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable
 from functools import partial
 from statistics import geometric_mean
@@ -16,6 +17,7 @@ from statistics import geometric_mean
 import numpy as np
 
 from bench.representation.meshes import load_colored, view
+from environment import ROOT
 from measuring.models import short
 from measuring.report import Table
 from splat_addon.differences import mean_flip, psnr
@@ -24,10 +26,14 @@ from splat_addon.reference.triangles import render_triangles
 from splat_addon.rendering import PRESETS, Renderer, Scene, Settings
 from splat_addon.sampling import Outline, camera_spacing, is_solid, outline, sample_surface
 from splat_addon.trade import ExactPictures
+from splat_addon.whole_files import write_whole
 
 MODELS = "plate", "fandisk.obj.gz", "truck.obj.gz", "spot.obj.gz", "armadillo.obj.gz"
 PIXELS = 0.375, 0.5, 0.75, 1.0, 1.5, 2.0, 3.0
 REDUCTIONS = "normal", "three_to_one", "none", "grazing"
+
+#: What the product knows.
+_KNOWN = ROOT / "splat_addon" / "sampling" / "density_error.py"
 
 #: Pixels between surfels at which reductions are compared.
 _COMPARED = 0.75
@@ -47,7 +53,7 @@ def units(renderer: Renderer, options, report) -> dict[str, Callable[[], list[di
 def _measure(name: str, renderer: Renderer, options, report) -> list[dict]:
     """A row for each density and reduction of a model."""
     mesh = load_colored(options.models, name)
-    camera, surface = view(mesh, 0, options.size), outline(mesh)
+    camera, surface = view(mesh, 0, _size(options)), outline(mesh)
     corners, colors = mesh.positions[mesh.triangles], mesh.corner_colors[..., :3]
     truths = {kind: remembered(render_triangles)(corners, colors, camera, pixel_filter=kind) for kind in _OF_FILTER}
     tried = [(pixels, "normal") for pixels in PIXELS] + [(_COMPARED, each) for each in REDUCTIONS[1:]]
@@ -58,6 +64,11 @@ def _measure(name: str, renderer: Renderer, options, report) -> list[dict]:
         row = {"model": short(name), "pixels": pixels, "reduction": reduction, "surfels": len(surfels)}
         rows.append({**row, **drawn})
     return rows
+
+
+def _size(options) -> int:
+    """Twice the others': the larger a mesh is in the picture, the less detail it has a pixel."""
+    return 2 * options.size
 
 
 def _spacing(surface: Outline, camera, pixels: float) -> float:
@@ -108,13 +119,22 @@ def made(rows: list[dict]) -> dict[str, Table]:
     return found
 
 
-def further(renderer: Renderer, options, rows: list[dict], report) -> None:
-    """Say what `sampling/density_error.py` has in `MEASURED`: under the filter where it is larger, the geometric mean
-    over the models, and the worst."""
+def write(options, rows: list[dict]) -> None:
+    """Write what the product knows of a density's error: under the filter where it is larger, the geometric mean over
+    the models, and the worst."""
     normal = [row for row in rows if row["reduction"] == "normal"]
     larger = {pixels: [_larger(row) for row in normal if row["pixels"] == pixels] for pixels in PIXELS}
-    found = {pixels: (round(geometric_mean(flips), 4), max(flips)) for pixels, flips in larger.items() if flips}
-    report.say(f"Typical and worst FLIP of surfels by pixels between them: {found}.")
+    found = {pixels: (geometric_mean(flips), max(flips)) for pixels, flips in larger.items() if flips}
+    text = _KNOWN.read_text(encoding="utf-8")
+    write_whole(_KNOWN, with_measured(text, _size(options), found).encode("utf-8"))
+
+
+def with_measured(text: str, size: int, found: dict[float, tuple[float, float]]) -> str:
+    """The source of `density_error` with other numbers between its marks."""
+    lines = "".join(f"    {pixels}: ({typical:.4f}, {worst:.4f}),\n" for pixels, (typical, worst) in found.items())
+    about = "#: Pixels between surfels -> (typical, worst) FLIP."
+    made = f"# measured\nSIZE = {size}\n{about}\nMEASURED = {{\n{lines}}}\n# end\n"
+    return re.sub(r"# measured\n.*?# end\n", made, text, flags=re.DOTALL)
 
 
 def _larger(row: dict) -> float:

@@ -16,6 +16,9 @@ from splat_addon.whole_files import write_whole
 #: What rows depend on, beside the options. Pages, tables and plots can be made again from the same rows.
 _MEASURED = "splat_addon", "shaders"
 
+#: What a run writes itself.
+_WRITTEN = ":!splat_addon/sampling/density_error.py"
+
 
 class Kept:
     """run: commit, machine and date of the first measurement. rows: name -> rows."""
@@ -40,6 +43,10 @@ class Kept:
             write_whole(self._file, json.dumps(kept, indent=1).encode("utf-8"))
         return self.rows[name]
 
+    def of_part(self, part: str) -> list[dict]:
+        """The rows of all scenes of a part."""
+        return [row for name, rows in self.rows.items() if name.startswith(f"{part}/") for row in rows]
+
 
 def _git(*arguments: str) -> str:
     return subprocess.run(["git", *arguments], cwd=ROOT, capture_output=True, text=True).stdout.strip()
@@ -48,7 +55,7 @@ def _git(*arguments: str) -> str:
 def _sources() -> str:
     """Identifies the sources that are measured; changes that are not committed count too."""
     trees = (_git("rev-parse", f"HEAD:{each}") for each in _MEASURED)
-    return " ".join([*trees, _git("diff", "HEAD", "--", *_MEASURED)])
+    return " ".join([*trees, _git("diff", "HEAD", "--", *_MEASURED, _WRITTEN)])
 
 
 def _run(device: str) -> dict:

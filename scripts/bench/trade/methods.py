@@ -277,7 +277,7 @@ def _layers(rows: list[dict]) -> Table:
     return Table("Transparent spheres by layers:", columns, lines)
 
 
-def further(renderer: Renderer, options, rows: list[dict], report) -> None:
+def plots(renderer: Renderer, options, rows: list[dict], report) -> None:
     timed = [row for row in rows if "ratio" in row]
     report.plot("frontier", plot_frontier(_promised(timed) or timed))
     shown = {}
