@@ -10,9 +10,10 @@ from functools import cached_property
 import numpy as np
 
 from ..scene import Scene
+from .chooser import Chooser
 from .gathering import RAYS, bounced, lit_by_lamps, seen_from, smoother
-from .points import Chooser, points_of
-from .surfaces import SIDES, Surfaces, make_surfaces, side_of
+from .points import points_of
+from .surfaces import Surfaces, make_surfaces
 from .table import Table, make_table
 
 #: Cubes in a scene's grid, and merged surfels, about.
@@ -77,17 +78,8 @@ def surfaces_of(scene: Scene, solid: np.ndarray, voxels: int, surfels: int) -> S
     low, edge, shape = grid_of(scene, voxels)
     if not edge > 0:
         return None
-    chooser = Chooser(int(np.prod(shape)) * SIDES)
-
-    def choose(positions: np.ndarray, normals: np.ndarray) -> np.ndarray:
-        at = ((positions - low) / edge).astype(np.float32).T
-        x, y, z = np.floor(at).astype(np.int64)
-        is_inside = (x >= 0) & (y >= 0) & (z >= 0) & (x < shape[0]) & (y < shape[1]) & (z < shape[2])
-        rows = np.flatnonzero(is_inside)
-        numbers = ((x * shape[1] + y) * shape[2] + z) * SIDES + side_of(normals)
-        return rows[chooser.fresh(numbers[rows])]
-
-    points = [some for some in points_of(scene, edge, solid, choose) if len(some)]
+    chooser = Chooser(low, edge, shape)
+    points = [some for some in points_of(scene, solid, chooser) if len(some)]
     return make_surfaces(low, edge, shape, points, surfels) if points else None
 
 

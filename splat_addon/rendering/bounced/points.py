@@ -5,10 +5,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...clip_lines import CLIP_FIELDS, are_reflex, kept, unpack_lines
+from ...clip_lines import kept
 from ...images import Image
 from ...quaternions import axes_columns
 from ...surfels import Surfels
@@ -17,6 +18,9 @@ from ..scene import Scene
 from ..scene.material import SurfaceTexture
 from ..scene.polygons import Polygons
 from ..scene.scene import Placed
+
+if TYPE_CHECKING:
+    from .chooser import Chooser
 
 #: Distance of points on large surfels and triangles; the most of a surfel's radius that one point stands for; both in
 #: cubes.
@@ -63,7 +67,7 @@ def with_backs(points: Points) -> Points:
 
 @dataclass(frozen=True, eq=False)
 class _Places:
-    """Points of a shape. positions, normals: (n, 3) float32, object units. rows: (n, k) surfels or corners. weights:
+    """Points of a shape. positions, normals: (3, n) float32, object units. rows: (n, k) surfels or corners. weights:
     (n, k) of these."""
 
     positions: np.ndarray
@@ -72,31 +76,16 @@ class _Places:
     weights: np.ndarray
 
     def taken(self, rows) -> _Places:
-        return _Places(self.positions[rows], self.normals[rows], self.rows[rows], self.weights[rows])
+        return _Places(self.positions[:, rows], self.normals[:, rows], self.rows[rows], self.weights[rows])
+
+    def __len__(self) -> int:
+        return self.positions.shape[1]
 
 
-class Chooser:
-    """Keeps one point of each cube and side: which of some numbers have not been seen before."""
-
-    def __init__(self, count: int):
-        self._seen = np.zeros(count, bool)
-        self._last = np.empty(count, np.int32)
-
-    def fresh(self, numbers: np.ndarray) -> np.ndarray:
-        """Rows of (n,) numbers, one of each that is new."""
-        rows = np.flatnonzero(~self._seen[numbers])
-        own = numbers[rows]
-        order = np.arange(len(rows), dtype=np.int32)
-        self._last[own] = order
-        rows = rows[self._last[own] == order]
-        self._seen[numbers[rows]] = True
-        return rows
-
-
-def points_of(scene: Scene, edge: float, solid: np.ndarray, choose) -> Iterator[Points]:
-    """Points of everything in the scene, at most `edge` apart. solid: as of `are_solid`. choose: function of (n, 3)
-    positions and normals that returns the rows to keep, called before what is dear is looked up."""
-    table = scene.table
+def points_of(scene: Scene, solid: np.ndarray, chooser: Chooser) -> Iterator[Points]:
+    """Points of everything in the scene, at most a cube apart; of these, those that are chosen. solid: as of
+    `are_solid`."""
+    table, edge = scene.table, chooser.edge
     for kind in np.unique(table.kind_of).tolist():
         rows = np.flatnonzero((table.kind_of == kind) & ~table.are_flattened)
         if not len(rows):
@@ -108,31 +97,48 @@ def points_of(scene: Scene, edge: float, solid: np.ndarray, choose) -> Iterator[
             places = places.taken(opaque)
         if len(rows) > 1:
             places = _thinned(places, edge / float(table.stretches[largest, 0]))
-        step = max(_AT_ONCE // max(len(places.positions), 1), 1)
+        step = max(_AT_ONCE // max(len(places), 1), 1)
         for first in range(0, len(rows), step):
             some = rows[first : first + step]
-            yield _placed_points(placed, places, table.matrices[some], table.light_sets[some], solid[some], choose)
+            yield _placed_points(placed, places, table.matrices[some], table.light_sets[some], solid[some], chooser)
 
 
 def _placed_points(
-    placed: Placed, places: _Places, matrices: np.ndarray, light_sets: np.ndarray, solid: np.ndarray, choose
+    placed: Placed, places: _Places, matrices: np.ndarray, light_sets: np.ndarray, solid: np.ndarray, chooser: Chooser
 ) -> Points:
     """The points of instances with these (m, 4, 4) matrices."""
-    linear, count = matrices[:, :3, :3], max(len(places.positions), 1)
+    linear, count = matrices[:, :3, :3], max(len(places), 1)
     shift = linear @ np.asarray(placed.shape.origin) + matrices[:, :3, 3]
     scaled = linear / np.abs(linear).max(axis=(1, 2), keepdims=True)  # products of tiny numbers would vanish
-    turned = np.linalg.inv(scaled) * np.sign(np.linalg.det(scaled))[:, None, None]
+    turned = np.linalg.inv(scaled).swapaxes(1, 2) * np.sign(np.linalg.det(scaled))[:, None, None]
     turned /= np.abs(turned).max(axis=(1, 2), keepdims=True)
-    positions = np.matmul(places.positions, linear.swapaxes(1, 2).astype(np.float32)) + shift[:, None]
-    normals = unit(np.matmul(places.normals, turned.astype(np.float32))).reshape(-1, 3)
-    positions = positions.reshape(-1, 3)
-    chosen = choose(positions, normals)
-    own, sets = places.taken(chosen % count), light_sets[chosen // count].astype(np.uint8)
+    at = _transformed(places.positions, linear / chooser.edge, (shift - chooser.low) / chooser.edge)
+    instances, rows = np.divmod(chooser.fresh(at, _transformed(places.normals, turned)), count)
+    own = places.taken(rows)
+    positions, normals = (
+        np.einsum("njk,kn->nj", of_instances[instances], columns)
+        for of_instances, columns in ((linear, own.positions), (turned, own.normals))
+    )
     albedo, emission = _surfaces(placed, own)
-    have_backs = ~solid[chosen // count]
+    have_backs = ~solid[instances]
     if getattr(placed.shape, "hidden_back", None) is not None:
         have_backs &= placed.shape.hidden_back[own.rows[:, 0]] < 0.5
-    return Points(positions[chosen], normals[chosen], albedo, emission, sets, have_backs)
+    sets, normals = light_sets[instances].astype(np.uint8), unit(normals).astype(np.float32)
+    return Points(positions + shift[instances], normals, albedo, emission, sets, have_backs)
+
+
+def _transformed(columns: np.ndarray, linear: np.ndarray, shift: np.ndarray | None = None) -> np.ndarray:
+    """(3, m n) float32: (3, n) columns by (m, 3, 3) matrices, moved by (m, 3)."""
+    x, y, z = columns
+    by = linear.astype(np.float32)[..., None]
+    made = np.empty((3, len(linear), len(x)), np.float32)
+    for k, row in enumerate(made):
+        np.multiply(by[:, k, 0], x, out=row)
+        row += by[:, k, 1] * y
+        row += by[:, k, 2] * z
+        if shift is not None:
+            row += shift[:, k, None].astype(np.float32)
+    return made.reshape(3, -1)
 
 
 def _places(placed: Placed, linear: np.ndarray, edge: float) -> _Places:
@@ -145,21 +151,24 @@ def _thinned(places: _Places, edge: float) -> _Places:
     """One point of each small cube and side."""
     cubes = np.floor(places.positions / (_APART * edge)).astype(np.int64)
     sides = np.rint(places.normals * 2).astype(np.int64)
-    keys = np.concatenate([cubes, sides], axis=1)
+    keys = np.concatenate([cubes, sides]).T
     return places.taken(np.unique(keys, axis=0, return_index=True)[1])
 
 
 def _of_surfels(surfels: Surfels, linear: np.ndarray, edge: float) -> _Places:
     """linear: (3, 3) from rows in object units to the world's."""
-    normals = np.ascontiguousarray(axes_columns(surfels.rotations, 2)[0].T)
+    normals = axes_columns(surfels.rotations, 2)[0]
     stretch = float(np.linalg.norm(linear, 2))
-    every, is_large = np.arange(len(surfels)), surfels.radius * stretch > _LARGEST * edge
-    small = every[~is_large]
-    parts = [(surfels.positions[small] if len(small) < len(every) else surfels.positions, small)]
+    is_large = surfels.radius * stretch > _LARGEST * edge
     if is_large.any():
-        parts.append(_spread(surfels, every[is_large], linear, _APART * edge))
-    positions, rows = (np.concatenate(each) if len(parts) > 1 else each[0] for each in zip(*parts, strict=True))
-    return _Places(positions, normals[rows], rows[:, None], np.ones((len(rows), 1), np.float32))
+        small = np.flatnonzero(~is_large)
+        parts = (surfels.positions[small], small), _spread(surfels, np.flatnonzero(is_large), linear, _APART * edge)
+        positions, rows = (np.concatenate(each) for each in zip(*parts, strict=True))
+        normals = normals[:, rows]
+    else:
+        positions, rows = surfels.positions, np.arange(len(surfels))
+    columns = np.ascontiguousarray(positions.T)
+    return _Places(columns, normals, rows[:, None], np.ones((len(rows), 1), np.float32))
 
 
 def _spread(surfels: Surfels, large: np.ndarray, linear: np.ndarray, apart: float) -> tuple[np.ndarray, np.ndarray]:
@@ -168,17 +177,15 @@ def _spread(surfels: Surfels, large: np.ndarray, linear: np.ndarray, apart: floa
         axes_columns(surfels.rotations[large], 0, 1), surfels.scales[large].T, strict=True)]  # fmt: skip
     lengths = np.stack([np.linalg.norm(axis @ linear, axis=1) for axis in axes], axis=1)
     counts = _counts(2 * _COVERS * lengths / apart)
-    rows, (i, j) = _grids(counts)
-    at = ((np.stack([i, j], axis=1) + 0.5) / counts[rows] * 2 - 1) * _COVERS
-    own = large[rows]
+    rows, places = _grids(counts)
+    at = np.stack([((k + 0.5) / counts[rows, j] * 2 - 1) * _COVERS for j, k in enumerate(places)], axis=1)
+    at = at.astype(np.float32)
     is_kept = (at**2).sum(axis=1) <= 1
-    packed = [np.asarray(field) for field in (getattr(surfels, name) for name in CLIP_FIELDS) if field is not None]
-    if packed:
-        lines = [unpack_lines(one[own]) for one in packed]
-        lines = np.stack([*lines, *lines][:2], axis=1)
-        reflex = are_reflex(*(one[own] for one in packed)) if len(packed) == 2 else np.zeros(len(own), bool)
-        is_kept &= kept(at, lines, reflex)
-    at, rows, own = at[is_kept].astype(np.float32), rows[is_kept], own[is_kept]
+    if surfels.is_clipped:
+        cut = np.flatnonzero(surfels.is_cut()[large][rows])
+        is_kept[cut] &= kept(at[cut], *surfels.take(large[rows[cut]]).clip_lines())
+    at, rows = at[is_kept], rows[is_kept]
+    own = large[rows]
     return surfels.positions[own] + axes[0][rows] * at[:, :1] + axes[1][rows] * at[:, 1:], own
 
 
@@ -219,7 +226,8 @@ def _of_triangles(polygons: Polygons, linear: np.ndarray, edge: float) -> _Place
     first, *others = (corners[usable, k] for k in (apex, *ends))
     along = [other - first for other in others]
     positions = first[rows] + along[0][rows] * u[:, None] + along[1][rows] * v[:, None]
-    return _Places(positions, normals[own], 3 * own[:, None] + order, np.stack([1 - u - v, u, v], axis=1))
+    weights = np.stack([1 - u - v, u, v], axis=1)
+    return _Places(np.ascontiguousarray(positions.T), normals[own].T, 3 * own[:, None] + order, weights)
 
 
 def _mean(values: np.ndarray, places: _Places) -> np.ndarray:
@@ -249,7 +257,7 @@ def _looked_up(image: Image, uvs: np.ndarray) -> np.ndarray:
 
 def _are_opaque(placed: Placed, places: _Places) -> np.ndarray:
     """(n,) bool: points that block light."""
-    opaque = np.ones(len(places.positions), bool)
+    opaque = np.ones(len(places), bool)
     if placed.lets_through:
         opaque &= placed.shape.colors[places.rows[:, 0], 3] >= _OPAQUE
     if getattr(placed, "is_cut_out", False):
