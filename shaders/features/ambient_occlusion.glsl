@@ -137,11 +137,15 @@ float open_share_around(ivec2 texel, vec3 position, vec3 normal) {
   return total.y > 0.0 ? total.x / total.y : 1.0;
 }
 
+void leave_open(float share, vec3 color) {
+  open_share = share;
+  vec3 albedo = clamp(color, 0.0, 1.0);
+  vec3 a = 2.0404 * albedo - 0.3324, b = 0.6417 - 4.7951 * albedo, c = 2.7552 * albedo + 0.6903;
+  open_diffuse = max(vec3(share), ((a * share + b) * share + c) * share);
+}
+
 void ambient_occlusion_prepare(inout Shaded s) {
   vec3 position = eye_position(s.texel, s.mean.depth);
-  open_share = open_share_around(s.texel, position, s.normal);
   open_cosine = clamp(dot(s.normal, to_viewer(position)), 0.0, 1.0);
-  vec3 albedo = clamp(s.mean.color, 0.0, 1.0);
-  vec3 a = 2.0404 * albedo - 0.3324, b = 0.6417 - 4.7951 * albedo, c = 2.7552 * albedo + 0.6903;
-  open_diffuse = max(vec3(open_share), ((a * open_share + b) * open_share + c) * open_share);
+  leave_open(open_share_around(s.texel, position, s.normal), s.mean.color);
 }

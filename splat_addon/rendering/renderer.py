@@ -23,7 +23,7 @@ from .detail.streamed import Streamed
 from .device import Device
 from .device.interface import Target, texture_bytes
 from .device.interface import Texture as DeviceTexture
-from .features import bounced_light, glass, mirrors, reflections, screen
+from .features import bounced_light, crowns, glass, mirrors, reflections, screen
 from .features.outputs import check_samplers
 from .frame import OUTPUTS, Frame
 from .identity import Identified, nearer
@@ -261,11 +261,16 @@ class Renderer:
         check_samplers(frame_plan, self.device.max_samplers)
         told = {"is_repeatable": is_repeatable, "whole": whole, "eye": eye, "is_draft": is_draft, "panes": panes}
         seen = (known, None, None) if known else self._reflected(scene, camera, settings, frame_plan, told)
-        is_bounced = frame_plan.found.get(bounced_light.missing) == ""
-        light = None
-        if is_bounced and frame_plan.passes:
-            light = self.bounced.of(whole, eye, settings.bounces, is_draft)
+        light = self._bounced(whole, frame_plan, settings, eye, is_draft)
         return Shared(scene, frame_plan, settings, repeated, before, *seen, light, panes)
+
+    def _bounced(self, whole: Scene, frame_plan: FramePlan, settings: Settings, eye: np.ndarray, is_draft: bool):
+        """What cells of space know of the light in a scene, if the plan looks it up."""
+        if not frame_plan.passes:
+            return None
+        if frame_plan.found.get(bounced_light.missing) == "":
+            return self.bounced.of(whole, eye, settings.bounces, is_draft)
+        return self.bounced.of_crowns(whole) if frame_plan.found.get(crowns.crowns) else None
 
     def _reflected(self, scene: Scene, camera: Camera, settings: Settings, frame_plan: FramePlan, told: dict):
         """What the plan's probes and mirror see, and the camera, drawn if anything in it has changed; None for what it

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..contents import contents
 from ..scene import Scene
+from .crowns import crowns_of
 from .light import BouncedLight, bounced_light
 from .solids import are_solid
 
@@ -33,6 +34,13 @@ class Bounced:
         if self._kept is None or self._kept[0] != made_from or (self._is_draft and not is_draft):
             self._kept = made_from, bounced_light(scene, solid, bounces, **(DRAFT if is_draft else {}))
             self._is_draft = is_draft
+        return self._kept[1]
+
+    def of_crowns(self, scene: Scene) -> BouncedLight:
+        """As of `crowns_of`; the same object as long as the scene is."""
+        made_from = "crowns", contents(scene, _NO_MATTER | {"lights", "world", "environment"})
+        if self._kept is None or self._kept[0] != made_from:
+            self._kept = made_from, crowns_of(scene)
         return self._kept[1]
 
     def forget(self) -> None:

@@ -92,8 +92,8 @@ def points_of(scene: Scene, solid: np.ndarray, chooser: Chooser) -> Iterator[Poi
             continue
         placed = table.every_kind[kind]
         largest = rows[table.stretches[rows, 0].argmax()]
-        places = _places(placed, table.matrices[largest, :3, :3], edge)
-        if not (opaque := _are_opaque(placed, places)).all():
+        places = places_in(placed, table.matrices[largest, :3, :3], edge)
+        if not (opaque := are_opaque(placed, places)).all():
             places = places.taken(opaque)
         if len(rows) > 1:
             places = _thinned(places, edge / float(table.stretches[largest, 0]))
@@ -141,7 +141,7 @@ def _transformed(columns: np.ndarray, linear: np.ndarray, shift: np.ndarray | No
     return made.reshape(3, -1)
 
 
-def _places(placed: Placed, linear: np.ndarray, edge: float) -> _Places:
+def places_in(placed: Placed, linear: np.ndarray, edge: float) -> _Places:
     """linear: (3, 3), of its largest instance."""
     of_shape = _of_surfels if isinstance(placed.shape, Surfels) else _of_triangles
     return of_shape(placed.shape, linear.T.astype(np.float32), edge)
@@ -255,7 +255,7 @@ def _looked_up(image: Image, uvs: np.ndarray) -> np.ndarray:
     return image.pyramid.lookup(uvs.T, np.zeros(len(uvs), np.intp))
 
 
-def _are_opaque(placed: Placed, places: _Places) -> np.ndarray:
+def are_opaque(placed: Placed, places: _Places) -> np.ndarray:
     """(n,) bool: points that block light."""
     opaque = np.ones(len(places), bool)
     if placed.lets_through:

@@ -32,11 +32,11 @@ def _to_cells(tile) -> np.ndarray:
 
 VALUES = {
     "to_cells": ("mat4", _to_cells),
-    "bounced_slots": ("float", lambda tile: tile.shared.bounced.table.slots),
-    "bounced_probes": ("float", lambda tile: tile.shared.bounced.table.probes),
+    "cells_slots": ("float", lambda tile: tile.shared.bounced.table.slots),
+    "cells_probes": ("float", lambda tile: tile.shared.bounced.table.probes),
 }
-INPUTS = {"bounced": lambda tile: tile.resources.kept(tile.shared.bounced, tile.shared.bounced.texels)}
-CONSTANTS = {"BOUNCED_PER_ROW": PER_ROW}
+INPUTS = {"cells": lambda tile: tile.resources.kept(tile.shared.bounced, tile.shared.bounced.texels)}
+CONSTANTS = {"CELLS_PER_ROW": PER_ROW}
 
 
 def passes(planning):
@@ -55,4 +55,4 @@ def is_present(planning) -> bool:
 
 def parts(planning, p):
     if p.host in LIT_HOSTS:
-        yield Part("bounced_light", inputs=("bounced",))
+        yield Part("bounced_light", inputs=("cells",))

@@ -1,0 +1,51 @@
+// References: Teschner et al. 2003 (the hash).
+// Summary: what cells of space know of six sides. The texture is that of rendering/bounced/table.py. The twin of
+//          reference/bounced_light.py.
+
+// What a side counts for at least, so that a surface of which no cell knows the sides that it faces has light too.
+const float CELLS_LEAST = 1e-4;
+
+vec4 cells_texel(int number) {
+  return texelFetch(cells, ivec2(number % CELLS_PER_ROW, number / CELLS_PER_ROW), 0);
+}
+
+// The row of a cell in the table; -1 if it has none.
+int cells_row(ivec3 cell) {
+  uint hash = uint(cell.x) * 73856093u ^ uint(cell.y) * 19349663u ^ uint(cell.z) * 83492791u;
+  int slots = int(frame.cells_slots), probes = int(frame.cells_probes);
+  for (int k = 0; k < probes; k++) {
+    vec4 slot = cells_texel(int((hash + uint(k)) & uint(slots - 1)));
+    if (!(slot.w > 0.0)) break;
+    if (ivec3(slot.xyz) == cell) return int(slot.w) - 1;
+  }
+  return -1;
+}
+
+// What the cells around a place know of its sides, or of any sides. weight: negative where there are no cells.
+vec4 cells_at(vec3 place, vec3 normal, bool any_side, out float weight) {
+  vec3 at = place - 0.5, low = floor(at), share = at - low;
+  ivec3 sides = ivec3(0, 2, 4) + ivec3(lessThan(normal, vec3(0.0)));
+  vec3 facing = max(normal * normal, vec3(CELLS_LEAST));
+  vec4 total = vec4(0.0);
+  float sum = 0.0;
+  weight = -1.0;
+  for (int k = 0; k < 8; k++) {
+    ivec3 corner = ivec3(k & 1, k >> 1 & 1, k >> 2);
+    vec3 near = mix(1.0 - share, share, vec3(corner));
+    float own = near.x * near.y * near.z;
+    if (!(own > 0.0)) continue;
+    int row = cells_row(ivec3(low) + corner);
+    if (row < 0) continue;
+    weight = 0.0;
+    int first = int(frame.cells_slots) + 6 * row;
+    for (int i = 0; i < (any_side ? 6 : 3); i++) {
+      vec4 side = cells_texel(first + (any_side ? i : sides[i]));
+      if (side.a < 0.0) continue;
+      float counts = any_side ? own : own * facing[i];
+      total += counts * side;
+      sum += counts;
+    }
+  }
+  weight = max(weight, sum);
+  return total / max(sum, 1e-9);
+}
