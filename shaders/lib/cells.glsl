@@ -21,11 +21,25 @@ int cells_row(ivec3 cell) {
   return -1;
 }
 
+// Whether a side of a cell shares its light with the same side of the one a step of -1, 0 or 1 away: nothing is between.
+// row: -1 where the cell does not know.
+bool cells_linked(int row, int side, ivec3 away) {
+  if (row < 0) return true;
+  int bit = (away.x + 1) * 9 + (away.y + 1) * 3 + away.z + 1;
+  int first = int(frame.cells_slots) + TEXELS_PER_CELL * row;
+  if (cells_texel(first + side).a < 0.0) return true;
+  vec4 bits = cells_texel(first + 6 + side / 2);
+  vec2 own = side % 2 == 0 ? bits.xy : bits.zw;
+  return (int(bit < 13 ? own.x : own.y) >> (bit < 13 ? bit : bit - 13) & 1) != 0;
+}
+
 // What the cells around a place know of its sides, or of any sides. weight: negative where there are no cells.
 vec4 cells_at(vec3 place, vec3 normal, bool any_side, out float weight) {
   vec3 at = place - 0.5, low = floor(at), share = at - low;
   ivec3 sides = ivec3(0, 2, 4) + ivec3(lessThan(normal, vec3(0.0)));
   vec3 facing = max(normal * normal, vec3(CELLS_LEAST));
+  ivec3 middle = ivec3(floor(place));
+  int own_row = cells_row(middle);
   vec4 total = vec4(0.0);
   float sum = 0.0;
   weight = -1.0;
@@ -37,10 +51,11 @@ vec4 cells_at(vec3 place, vec3 normal, bool any_side, out float weight) {
     int row = cells_row(ivec3(low) + corner);
     if (row < 0) continue;
     weight = 0.0;
-    int first = int(frame.cells_slots) + 6 * row;
+    int first = int(frame.cells_slots) + TEXELS_PER_CELL * row;
     for (int i = 0; i < (any_side ? 6 : 3); i++) {
-      vec4 side = cells_texel(first + (any_side ? i : sides[i]));
-      if (side.a < 0.0) continue;
+      int number = any_side ? i : sides[i];
+      vec4 side = cells_texel(first + number);
+      if (side.a < 0.0 || !cells_linked(own_row, number, ivec3(low) + corner - middle)) continue;
       float counts = any_side ? own : own * facing[i];
       total += counts * side;
       sum += counts;

@@ -21,26 +21,36 @@ def bounced_at(light: BouncedLight, places: np.ndarray, normals: np.ndarray) -> 
     }
     values = np.concatenate([light.irradiance, light.open[:, None]], axis=1)
     at = (places - light.low) / light.cell - 0.5
+    linked = None
+    if light.linked is not None:
+        pairs = np.stack(light.linked, axis=1)
+        linked = set(map(tuple, np.concatenate([pairs, pairs[:, ::-1]]).tolist()))
     total, weights = np.zeros((len(places), 4)), np.zeros(len(places))
     for row, (point, normal) in enumerate(zip(at, normals, strict=True)):
         facing = [(2 * axis + int(normal[axis] < 0), max(normal[axis] ** 2, LEAST)) for axis in range(3)]
         for counted in (facing, [(side, 1.0) for side in range(SIDES)]):
             if not weights[row]:
-                total[row], weights[row] = _around(known, values, point, counted)
+                total[row], weights[row] = _around(known, linked, values, point, counted)
     with np.errstate(invalid="ignore"):
         mean = total / weights[:, None]
     return mean[:, :3], mean[:, 3]
 
 
-def _around(known: dict, values: np.ndarray, point: np.ndarray, counted: list) -> tuple[np.ndarray, float]:
-    """The sum of values around a point, in cells, and of their weights. counted: pairs of a side and its weight."""
+def _around(
+    known: dict, linked: set | None, values: np.ndarray, point: np.ndarray, counted: list
+) -> tuple[np.ndarray, float]:
+    """The sum of values around a point, in cells, and of their weights. linked: pairs of rows that share their light.
+    counted: pairs of a side and its weight."""
+    middle = np.floor(point + 0.5).astype(int).tolist()
     low = np.floor(point).astype(int)
     total, weights = np.zeros(4), 0.0
     for corner in np.ndindex(2, 2, 2):
         near = np.prod(np.where(corner, point - low, 1 - (point - low)))
         for side, facing in counted:
             found = known.get((*(low + corner).tolist(), side))
-            if found is not None:
+            own = known.get((*middle, side))
+            is_linked = linked is None or own is None or own == found or (own, found) in linked
+            if found is not None and is_linked:
                 total += near * facing * values[found]
                 weights += near * facing
     return total, weights

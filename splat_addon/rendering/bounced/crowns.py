@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How much of the world's light reaches the leaves within a crown: what screens cannot see where a crown has few pixels.
+"""How much of the world's light reaches leaves within a crown, which a picture in which it has few pixels cannot tell.
 
 Leaves are taken for a turbid medium: of light along a path, exp(-path G a) passes, where a is the leaf area per volume
 and G, the mean cosine of leaves turned at random, is 1/2 (Monsi and Saeki 1953; Ross, "The Radiation Regime and
@@ -62,10 +62,11 @@ def crowns_of(scene: Scene) -> BouncedLight:
         rows = np.flatnonzero((table.kind_of == kind) & ~table.are_flattened)
         if len(rows) and is_crown(placed) and (made := crown_of(placed)) is not None:
             crowns.append((made, placed, rows))
-    times = 1
-    while sum(len(crown.pooled(times).cells) * len(rows) for crown, _, rows in crowns) > _OF_WORLD and times < _OF_SHAPE:
-        times *= 2
-    crowns = [(crown.pooled(times), placed, rows) for crown, placed, rows in crowns]
+    while sum(len(crown.cells) * len(rows) for crown, _, rows in crowns) > _OF_WORLD:
+        pooled = [(crown.pooled(2), placed, rows) for crown, placed, rows in crowns]
+        if all(len(after.cells) == len(before.cells) for (after, *_), (before, *_) in zip(pooled, crowns, strict=True)):
+            break
+        crowns = pooled
     edge = max((crown.edge * float(np.median(table.stretches[rows, 0])) for crown, _, rows in crowns), default=0.0)
     if not edge > 0:
         none = np.zeros((0, 3))

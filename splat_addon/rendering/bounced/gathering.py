@@ -167,7 +167,7 @@ _EVEN, _TURNS = 0.35, 3
 def smoother(surfaces: Surfaces, seen: Seen) -> Callable[[np.ndarray], np.ndarray]:
     """A function that makes values (m, c) even where the light cannot differ much; those of merged surfels that see
     nothing are those of their neighbours."""
-    first, second = surfaces.neighbours()
+    first, second = surfaces.neighbours
     normals = surfaces.mean(surfaces.points.normals)
     is_usable = seen.counts > 0
     reach = np.where(is_usable, _EVEN * seen.distances, 1.0)

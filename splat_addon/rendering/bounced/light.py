@@ -28,7 +28,8 @@ _MULTIPLE = 16
 class BouncedLight:
     """low: (3,) float64 world, corner of the cells. cell: their edge. cells: (m, 3) whole numbers of merged surfels'
     cells; sides: (m,) 0 to 5. irradiance: (m, 3) over pi, of all light but lamps'. open: (m,) share of the world in the
-    half-space over it, weighted by the cosine."""
+    half-space over it, weighted by the cosine. linked: (p,) each, pairs of rows of one side in cells beside each other
+    that share their light; None for all."""
 
     low: np.ndarray
     cell: float
@@ -36,10 +37,11 @@ class BouncedLight:
     sides: np.ndarray
     irradiance: np.ndarray
     open: np.ndarray
+    linked: tuple[np.ndarray, np.ndarray] | None = None
 
     @cached_property
     def table(self) -> Table:
-        return make_table(self.cells, self.sides, self.irradiance, self.open)
+        return make_table(self.cells, self.sides, self.irradiance, self.open, self.linked)
 
     def texels(self) -> np.ndarray:
         """(rows, 1024, 4) float32, as of `Table`."""
@@ -70,7 +72,10 @@ def bounced_light(
     is_open, is_known = smooth(np.stack([seen.open, seen.counts > 0], axis=1)).T
     known, grid = np.flatnonzero(is_known > 0), surfaces.voxels
     of_surfels = (each[known] for each in (surfaces.cells, surfaces.sides, light, is_open))
-    return BouncedLight(grid.low, surfaces.cell * grid.edge, *of_surfels)
+    row_of = np.full(len(surfaces), -1)
+    row_of[known] = np.arange(len(known))
+    linked = row_of[np.stack(surfaces.neighbours)]
+    return BouncedLight(grid.low, surfaces.cell * grid.edge, *of_surfels, tuple(linked[:, (linked >= 0).all(axis=0)]))
 
 
 def surfaces_of(scene: Scene, solid: np.ndarray, voxels: int, surfels: int) -> Surfaces | None:

@@ -120,11 +120,22 @@ def _placed_points(
         for of_instances, columns in ((linear, own.positions), (turned, own.normals))
     )
     albedo, emission = _surfaces(placed, own)
+    if emission.any():
+        emission *= np.where(solid, _shown(places, linear, chooser.edge), 1)[instances, None].astype(np.float32)
     have_backs = ~solid[instances]
     if getattr(placed.shape, "hidden_back", None) is not None:
         have_backs &= placed.shape.hidden_back[own.rows[:, 0]] < 0.5
     sets, normals = light_sets[instances].astype(np.uint8), unit(normals).astype(np.float32)
     return Points(positions + shift[instances], normals, albedo, emission, sets, have_backs)
+
+
+def _shown(places: _Places, linear: np.ndarray, edge: float) -> np.ndarray:
+    """(m,) the area that a box around points shows on average, in instances with these (m, 3, 3) matrices, as a
+    share of what the cubes that it is in show: small lamps fill larger ones."""
+    extent = np.ptp(places.positions, axis=1) * np.linalg.norm(linear, axis=1)
+    x, y, z = extent.T
+    wide, deep, high = (extent + edge).T
+    return (x * y + y * z + z * x) / (wide * deep + deep * high + high * wide)
 
 
 def _transformed(columns: np.ndarray, linear: np.ndarray, shift: np.ndarray | None = None) -> np.ndarray:

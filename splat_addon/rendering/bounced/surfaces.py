@@ -6,10 +6,12 @@ A merged surfel stands for all points in a cell of several cubes whose normals a
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
+from ...vectors import unit
 from .points import Points, joined, with_backs
 from .voxels import Voxels, make_voxels
 
@@ -18,11 +20,16 @@ SIDES = 6
 _CELLS = (3, 4, 6, 8, 12, 16, 24, 32)
 
 
+#: Which of a merged surfel's points may be its middle one, by their share of all.
+_CANDIDATES = 0.5, 0.2, 0.8
+
+
 @dataclass(frozen=True, eq=False)
 class Surfaces:
     """voxels: what is full. cell: cubes along the side of a cell. points: ordered by merged surfel; those of one begin
     at `first` (m + 1,). cells: (m, 3) of each merged surfel, and `sides` (m,). starts: (n, 3) where the points' rays
-    begin, relative to `voxels.low`. are_free: (n,) bool, whether that is outside of everything. numbers: (cells, 6)
+    begin, relative to `voxels.low`. are_free: (n,) bool, whether that is outside of everything and sees the merged
+    surfel's middle one, `middles` (m,): of what is on both sides of a wall, only one part counts. numbers: (cells, 6)
     int32 merged surfels of the cells in flat order, -1 for none. present: (cubes,) uint8, a bit for each side that a
     cube has, so that what is met beside an edge is not taken for what is behind it.
     """
@@ -35,6 +42,7 @@ class Surfaces:
     sides: np.ndarray
     starts: np.ndarray
     are_free: np.ndarray
+    middles: np.ndarray
     numbers: np.ndarray
     present: np.ndarray
 
@@ -61,7 +69,17 @@ class Surfaces:
     def _flat_cells(self, cells: np.ndarray) -> np.ndarray:
         return np.ravel_multi_index(cells.T, cells_of(self.voxels.blocks.shape, self.cell))
 
+    @cached_property
     def neighbours(self) -> tuple[np.ndarray, np.ndarray]:
+        """Pairs of merged surfels of one side in cells beside each other, with nothing between: (p,) of each."""
+        first, second = self._beside()
+        begins, toward, lengths = _between(self.starts[self.middles[first]], self.starts[self.middles[second]])
+        is_usable = self.are_free[self.middles[first]] & self.are_free[self.middles[second]]
+        some = np.flatnonzero(is_usable)
+        seen = some[self.voxels.first_full(begins[some], toward[some], lengths[some]) < 0]
+        return first[seen], second[seen]
+
+    def _beside(self) -> tuple[np.ndarray, np.ndarray]:
         """Pairs of merged surfels of one side in cells beside each other: (p,) of each."""
         shape = np.array(cells_of(self.voxels.blocks.shape, self.cell))
         pairs = []
@@ -126,4 +144,46 @@ def make_surfaces(
     first = np.append(begins, len(ordered))
     own = at[order[begins]] // cell
     numbers, sides = numbers.reshape(-1, SIDES), sides[order[begins]]
-    return Surfaces(voxels, cell, every, first, own, sides, starts, are_free, numbers, present)
+    made = Surfaces(voxels, cell, every, first, own, sides, starts, are_free, first[:-1], numbers, present)
+    middles, are_free = _together(made)
+    return replace(made, middles=middles, are_free=are_free)
+
+
+def _between(starts: np.ndarray, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Rays from (n, 3) places to others: the places, unit directions (n, 3) and lengths (n,)."""
+    way = ends - starts
+    lengths = np.linalg.norm(way, axis=1)
+    return starts, way / np.maximum(lengths, 1e-30)[:, None], lengths
+
+
+def _together(surfaces: Surfaces) -> tuple[np.ndarray, np.ndarray]:
+    """(m,) a free one of the starts of each merged surfel that sees most others, not from within things, and (n,) bool,
+    which see it. Of those with none that is free, the first."""
+    starts, first = surfaces.starts, surfaces.first
+    free, sizes = np.flatnonzero(surfaces.are_free), np.diff(first)
+    if not len(free):
+        return first[:-1], surfaces.are_free
+    own = np.repeat(np.arange(len(sizes)), sizes)[free]
+    begins, counts = np.searchsorted(own, np.arange(len(sizes))), np.bincount(own, minlength=len(sizes))
+    best, chosen, seen = np.zeros(len(sizes)), first[:-1].copy(), np.zeros(len(starts), bool)
+    for share in _CANDIDATES:
+        row = np.minimum(begins + (counts * share).astype(int), len(free) - 1)
+        candidates = np.where(counts > 0, free[row], first[:-1])
+        is_seen = surfaces.voxels.first_full(*_between(starts[candidates[own]], starts[free])) < 0
+        number = np.bincount(own, is_seen, len(sizes)) * (0.01 + _outside(surfaces, candidates))
+        is_better = number > best
+        best[is_better], chosen[is_better] = number[is_better], candidates[is_better]
+        rows = is_better[own]
+        seen[free[rows]] = is_seen[rows]
+    return chosen, seen
+
+
+def _outside(surfaces: Surfaces, rows: np.ndarray) -> np.ndarray:
+    """(n,) of points' rays the share that meets a side of what is there, or nothing; the others are within things."""
+    around = np.concatenate([np.eye(3), -np.eye(3)]) * 0.8
+    directions = unit(surfaces.points.normals[rows, None] + around).reshape(-1, 3)
+    cubes = surfaces.voxels.first_full(np.repeat(surfaces.starts[rows], len(around), axis=0), directions)
+    is_met = cubes >= 0
+    is_outside = ~is_met
+    is_outside[is_met] = surfaces.hit(cubes[is_met], directions[is_met]) >= 0
+    return is_outside.reshape(len(rows), -1).mean(axis=1)

@@ -17,6 +17,8 @@ from .surfaces import SIDES
 PER_ROW = 1024
 #: What the sides have that no surface has: a negative share of the world.
 ABSENT = -1.0
+#: Texels of a cell: its sides, and the bits of two sides each. How many of these are in the first number.
+PER_CELL, _HALF = SIDES + SIDES // 2, 13
 #: Slots per cell, at least.
 _ROOM = 2
 _FACTORS = np.array([73856093, 19349663, 83492791], np.uint32)
@@ -24,29 +26,52 @@ _FACTORS = np.array([73856093, 19349663, 83492791], np.uint32)
 
 class Table(NamedTuple):
     """texels: (rows, 1024, 4) float32: for each slot the cell's numbers and 1 + its row, or 0; then for each row the
-    six sides' irradiance over pi and the world's share. slots: a power of two. probes: the most slots that a look-up
-    reads."""
+    six sides' irradiance over pi and the world's share, and for two sides in each of three texels the bits of 27 cells
+    around it, as of `link_bit`, that the side is linked with: the first 13, and the rest. slots: a power of two.
+    probes: the most slots that a look-up reads."""
 
     texels: np.ndarray
     slots: int
     probes: int
 
 
-def make_table(cells: np.ndarray, sides: np.ndarray, irradiance: np.ndarray, is_open: np.ndarray) -> Table:
-    """Of merged surfels: cells: (m, 3) whole numbers. sides: (m,). irradiance: (m, 3). is_open: (m,)."""
+def make_table(
+    cells: np.ndarray, sides: np.ndarray, irradiance: np.ndarray, is_open: np.ndarray, linked: tuple | None = None
+) -> Table:
+    """Of merged surfels: cells: (m, 3) whole numbers. sides: (m,). irradiance: (m, 3). is_open: (m,). linked: pairs of
+    them, as of `BouncedLight`."""
     every, row = np.unique(cells, axis=0, return_inverse=True)
     slots = 1 << int(np.ceil(np.log2(max(_ROOM * len(every), 2))))
     place, probes = _placed(every, slots)
-    texels = np.zeros((slots + len(every) * SIDES, 4), np.float32)
+    texels = np.zeros((slots + len(every) * PER_CELL, 4), np.float32)
     texels[place, :3], texels[place, 3] = every, 1 + np.arange(len(every))
-    values = texels[slots:].reshape(-1, SIDES, 4)
+    of_cells = texels[slots:].reshape(-1, PER_CELL, 4)
+    values = of_cells[:, :SIDES]
     values[..., 3] = ABSENT
+    of_cells[:, SIDES:] = _links(cells, sides, linked, row.ravel(), len(every)).reshape(len(every), SIDES // 2, 4)
     bounded = np.minimum(irradiance, MAX_IRRADIANCE)  # as lamps have it
     values[row.ravel(), sides] = np.concatenate([bounded, is_open[:, None]], axis=1)
     rows = -(-len(texels) // PER_ROW)
     padded = np.zeros((rows * PER_ROW, 4), np.float32)
     padded[: len(texels)] = texels
     return Table(padded.reshape(rows, PER_ROW, 4), slots, probes)
+
+
+def link_bit(steps: np.ndarray) -> np.ndarray:
+    """(n,) numbers of the cells (n, 3) steps of -1, 0 or 1 away; 13 is the same one."""
+    return (steps + 1) @ np.array([9, 3, 1])
+
+
+def _links(cells: np.ndarray, sides: np.ndarray, linked: tuple | None, row: np.ndarray, count: int) -> np.ndarray:
+    """(count, 6, 2) float32 bits of each cell and side, those of 0 to 12 and of 13 to 26."""
+    if linked is None:
+        return np.broadcast_to(np.array([(1 << _HALF) - 1, (1 << (27 - _HALF)) - 1], np.float32), (count, SIDES, 2))
+    bits = np.zeros((count, SIDES, 27), bool)
+    bits[..., _HALF] = True
+    for first, second in (linked, linked[::-1]):
+        bits[row[first], sides[first], link_bit(cells[second] - cells[first])] = True
+    powers = 2.0 ** np.concatenate([np.arange(_HALF), np.arange(27 - _HALF)])
+    return np.stack([bits[..., :_HALF] @ powers[:_HALF], bits[..., _HALF:] @ powers[_HALF:]], axis=-1)
 
 
 def hashes(cells: np.ndarray) -> np.ndarray:

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..bounced.table import PER_ROW
+from ..bounced.table import PER_CELL, PER_ROW
 from ..plan.graph import Part
 from ..plan.hosts import LIT_HOSTS
 
@@ -36,7 +36,7 @@ VALUES = {
     "cells_probes": ("float", lambda tile: tile.shared.bounced.table.probes),
 }
 INPUTS = {"cells": lambda tile: tile.resources.kept(tile.shared.bounced, tile.shared.bounced.texels)}
-CONSTANTS = {"CELLS_PER_ROW": PER_ROW}
+CONSTANTS = {"CELLS_PER_ROW": PER_ROW, "TEXELS_PER_CELL": PER_CELL}
 
 
 def passes(planning):
