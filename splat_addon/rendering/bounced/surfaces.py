@@ -20,8 +20,10 @@ SIDES = 6
 _CELLS = (3, 4, 6, 8, 12, 16, 24, 32)
 
 
-#: Which of a merged surfel's points may be its middle one, by their share of all.
-_CANDIDATES = 0.5, 0.2, 0.8
+#: How many of a merged surfel's points may be its middle one.
+_CANDIDATES = 6
+#: What a ray that leaves the scene counts for beside one that does not.
+_OUTDOORS = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,8 +159,9 @@ def _between(starts: np.ndarray, ends: np.ndarray) -> tuple[np.ndarray, np.ndarr
 
 
 def _together(surfaces: Surfaces) -> tuple[np.ndarray, np.ndarray]:
-    """(m,) a free one of the starts of each merged surfel that sees most others, not from within things, and (n,) bool,
-    which see it. Of those with none that is free, the first."""
+    """(m,) a free one of the starts of each merged surfel, and (n,) bool, which others it sees. Of those with none that
+    is free, the first. Of parts inside and outside of a room, the one inside is taken: light that leaks into the dark is
+    seen sooner than shade below eaves."""
     starts, first = surfaces.starts, surfaces.first
     free, sizes = np.flatnonzero(surfaces.are_free), np.diff(first)
     if not len(free):
@@ -166,24 +169,24 @@ def _together(surfaces: Surfaces) -> tuple[np.ndarray, np.ndarray]:
     own = np.repeat(np.arange(len(sizes)), sizes)[free]
     begins, counts = np.searchsorted(own, np.arange(len(sizes))), np.bincount(own, minlength=len(sizes))
     best, chosen, seen = np.zeros(len(sizes)), first[:-1].copy(), np.zeros(len(starts), bool)
-    for share in _CANDIDATES:
-        row = np.minimum(begins + (counts * share).astype(int), len(free) - 1)
-        candidates = np.where(counts > 0, free[row], first[:-1])
-        is_seen = surfaces.voxels.first_full(*_between(starts[candidates[own]], starts[free])) < 0
-        number = np.bincount(own, is_seen, len(sizes)) * (0.01 + _outside(surfaces, candidates))
-        is_better = number > best
-        best[is_better], chosen[is_better] = number[is_better], candidates[is_better]
-        rows = is_better[own]
-        seen[free[rows]] = is_seen[rows]
+    have_any = counts > 0
+    for number in range(_CANDIDATES):
+        row = (begins + counts * (2 * number + 1) // (2 * _CANDIDATES))[have_any]
+        value = np.zeros(len(sizes))
+        value[have_any] = _indoors(surfaces, free[row])
+        is_better = value > best
+        best[is_better], chosen[is_better] = value[is_better], free[row][is_better[have_any]]
+    seen[free] = surfaces.voxels.first_full(*_between(starts[chosen[own]], starts[free])) < 0
     return chosen, seen
 
 
-def _outside(surfaces: Surfaces, rows: np.ndarray) -> np.ndarray:
-    """(n,) of points' rays the share that meets a side of what is there, or nothing; the others are within things."""
+def _indoors(surfaces: Surfaces, rows: np.ndarray) -> np.ndarray:
+    """(n,) how far points are in a room, above 0: the share of their rays that end at a side of what is there, and a
+    little of those that leave the scene; the others are within things."""
     around = np.concatenate([np.eye(3), -np.eye(3)]) * 0.8
     directions = unit(surfaces.points.normals[rows, None] + around).reshape(-1, 3)
     cubes = surfaces.voxels.first_full(np.repeat(surfaces.starts[rows], len(around), axis=0), directions)
     is_met = cubes >= 0
-    is_outside = ~is_met
-    is_outside[is_met] = surfaces.hit(cubes[is_met], directions[is_met]) >= 0
-    return is_outside.reshape(len(rows), -1).mean(axis=1)
+    value = np.where(is_met, 0.0, _OUTDOORS)
+    value[is_met] = surfaces.hit(cubes[is_met], directions[is_met]) >= 0
+    return _OUTDOORS**2 + value.reshape(len(rows), -1).mean(axis=1)

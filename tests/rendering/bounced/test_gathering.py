@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from splat_addon.reference import scenes
+from splat_addon.reference.bounced_light import bounced_at
 from splat_addon.rendering import Light, Material, PolygonInstance, Scene, make_polygons
 from splat_addon.rendering.bounced.gathering import bounced, lit_by_lamps, seen_from
 from splat_addon.rendering.bounced.light import bounced_light, sky_of, surfaces_of
@@ -141,3 +142,39 @@ def test_what_is_buried_does_not_count():
     assert beside.any()
     # a wall of height h leaves (1 + sin(a)) / 2 at its foot, of a the angle to its top
     assert 0.5 < np.median(light[beside, 0]) < 0.75
+
+
+def slab(middle, size) -> PolygonInstance:
+    """A solid white box."""
+    corners = [(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)]
+    return PolygonInstance(make_polygons(np.array(corners) * size + middle, FACES, color=(0.8, 0.8, 0.8, 1)))
+
+
+def test_hardly_any_light_passes_below_eaves_and_through_walls_that_are_thinner_than_cells():
+    off, thick = 1.05, 0.1
+    parts = [slab((0, 0, side * off), (2.4, 2.4, thick)) for side in (-1, 1)]  # floor and roof reach beyond the walls
+    parts += [slab((side * off, 0, 0), (thick, 2.2, 2.0)) for side in (-1, 1)]
+    parts += [slab((0, side * off, 0), (2.0, thick, 2.0)) for side in (-1, 1)]
+    scene = Scene(polygons=parts, world=(1.0, 1, 1))
+    light = bounced_light(scene, are_solid(scene, np.zeros(3)), 2, voxels=1 << 18, surfels=2000, rays=1 << 17)
+    assert light.cell > thick
+    across = np.linspace(-0.97, 0.97, 12)
+    x, y = (values.ravel() for values in np.meshgrid(across, across))
+    for axis in range(3):
+        places, normals = np.zeros((len(x), 3)), np.zeros((len(x), 3))
+        places[:, axis], normals[:, axis] = 1.0, -1.0
+        places[:, axis - 1], places[:, axis - 2] = x, y
+        inside, is_open = bounced_at(light, places, normals)
+        assert inside.mean() < 0.03 and (is_open > 0.02).mean() < 0.03  # 0.15 and 0.2 where cells share all
+
+
+def test_small_lamp_of_emission_sends_as_much_as_it_shows():
+    radius, apart = 0.06, 1.0
+    place = np.diag((radius,) * 3 + (1.0,))
+    place[2, 3] = apart
+    lamp = PolygonInstance(
+        replace(scenes.round_polygons(24), is_solid=True), place, materials=(Material(emission=(1.0,) * 3),)
+    )
+    light, places, normals, _, _ = gathered(Scene(polygons=[disc(1.0, 0.0, True), lamp]), 0, FINE)
+    below = (np.linalg.norm(places[:, :2], axis=1) < 0.2) & (places[:, 2] < 0.2) & (normals[:, 2] > 0)
+    assert light[below].mean() == pytest.approx((radius / apart) ** 2, rel=0.15)
