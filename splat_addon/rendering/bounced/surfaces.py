@@ -160,8 +160,8 @@ def _between(starts: np.ndarray, ends: np.ndarray) -> tuple[np.ndarray, np.ndarr
 
 def _together(surfaces: Surfaces) -> tuple[np.ndarray, np.ndarray]:
     """(m,) a free one of the starts of each merged surfel, and (n,) bool, which others it sees. Of those with none that
-    is free, the first. Of parts inside and outside of a room, the one inside is taken: light that leaks into the dark is
-    seen sooner than shade below eaves."""
+    is free, the first. Of parts inside and outside of a room, the one inside is taken: light that leaks into the dark
+    is seen sooner than shade below eaves."""
     starts, first = surfaces.starts, surfaces.first
     free, sizes = np.flatnonzero(surfaces.are_free), np.diff(first)
     if not len(free):
