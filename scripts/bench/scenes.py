@@ -3,8 +3,7 @@
 
 *ms* is the processor time of a frame; *times* is that time over the one of the same scene with one object, in the same
 turn. Instances share one set of surfels or polygons, objects have one each. *Planned* is the processor time of a frame
-whose draw calls are left out. On Blender's device, an animation reads objects of which one moves, and Cycles draws the
-same field of grass beside ours.
+whose draw calls are left out.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ from splat_addon.rendering.scene import Instance, PolygonInstance
 from splat_addon.sampling import TriangleMesh, sample_mesh
 
 DEVICES = ("standalone", "blender")
-QUICK = {"size": 16, "instances": [20], "objects": 10, "samples": 4, "read": 4, "blades": [200]}
+QUICK = {"size": 16, "instances": [20], "objects": 10, "samples": 4}
 PLACED = {"surfels": Instance, "polygons": PolygonInstance}
 LIGHTS = {"no shadows": 0, "a sun's shadows": 1, "two suns' shadows": 2}
 
@@ -31,8 +30,6 @@ def arguments(parser) -> None:
     parser.add_argument("--instances", type=int, nargs="+", default=[100, 1000, 4000])
     parser.add_argument("--objects", type=int, default=1000, help="different objects of 100 triangles")
     parser.add_argument("--samples", type=int, default=16)
-    parser.add_argument("--read", type=int, default=100, help="different objects that an animation reads")
-    parser.add_argument("--blades", type=int, nargs="+", default=[20_000], help="instances beside Cycles")
 
 
 def run(options, report) -> None:
@@ -40,11 +37,6 @@ def run(options, report) -> None:
     report.header(device, f"{options.size} x {options.size} pixels, medians of {options.turns} turns")
     report.table(["scene", "lights", "objects", "ms", "times"], list(by_number(device, options)))
     report.table(["scene, instances", "lights", "samples", "planned, ms", "times"], list(by_samples(device, options)))
-    if options.device == "blender":
-        from measuring import grass, reading
-
-        report.table(reading.COLUMNS, list(reading.rows(options.read)))
-        report.table(grass.COLUMNS, (row for n in options.blades for row in grass.rows(n)))
 
 
 def by_number(device, options):
