@@ -43,7 +43,7 @@ def arguments(parser) -> None:
     parser.add_argument("--parts", nargs="+", choices=PARTS, default=list(PARTS), help="what to measure")
     parser.add_argument("--scenes", nargs="+", choices=CASES, metavar="NAME", help=f"some of: {', '.join(CASES)}")
     parser.add_argument("--choices", choices=CHOICES, default="page", help="the settings that each is drawn with")
-    parser.add_argument("--size", type=int, default=112, help="pixels along each side; splats keep theirs")
+    parser.add_argument("--size", type=int, default=96, help="pixels along each side; splats keep theirs")
     parser.add_argument("--samples", type=int, default=8, help="N of the truth's N x N samples a pixel; of no choice")
     parser.add_argument("--seconds", type=float, default=2.0, help="of a choice, after at least 3 turns")
     parser.add_argument("--resume", action="store_true", help="go on with the rows of an interrupted run")
