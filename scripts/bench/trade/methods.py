@@ -278,7 +278,8 @@ def _layers(rows: list[dict]) -> Table:
 
 
 def plots(renderer: Renderer, options, rows: list[dict], report) -> None:
-    timed = [row for row in rows if "ratio" in row]
+    shown = [columns(settings).items() for settings in OF_PAGE]
+    timed = [row for row in rows if "ratio" in row and any(each <= row.items() for each in shown)]
     report.plot("frontier", plot_frontier(_promised(timed) or timed))
     shown = {}
     for name in (name for name in SHOWN if any(row["scene"] == name for row in rows)):
