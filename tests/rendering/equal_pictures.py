@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Compares the pictures of two checkouts bit by bit: `python3 equal_pictures.py BEFORE [AFTER]`.
 
-The cases are those of `test_agreement.py`, at a small size, and of `random_pictures.py` and `rare_pictures.py`, which
+The cases are those of `agreement_shots.py`, at a small size, and of `random_pictures.py` and `rare_pictures.py`, which
 also combine what seldom occurs together. The standalone device draws them; with `--device blender` it is Blender's, in
 the wheel's Python that runs this script, or in the program that `--blender` names. Pictures of the checkout BEFORE are
 kept in build/equal_pictures under its commit, the device and these files' texts, so that only the first comparison
@@ -170,14 +170,12 @@ def pictures(renderer, scene, camera, settings, refines=False) -> dict:
 
 def cases():
     """(name, function that makes scene, camera and settings, largest edge of a target or None) for each case."""
-    import test_agreement as agreement
-
     from splat_addon.rendering import Settings
 
-    agreement.SIZE = random_pictures.SIZE
-    makers = agreement.SCENES | agreement.HYBRID | agreement.TEXTURED | agreement.BLURRED
-    makers = makers | agreement.TRANSPARENT | agreement.ALL_AROUND | getattr(agreement, "SPECIAL", {})
-    for name, method, options in agreement.CASES:
+    scenes, shots = _agreement()
+    scenes.SIZE = random_pictures.SIZE
+    makers = scenes.MAKERS
+    for name, method, options in shots.CASES:
         settings = Settings(method=method, **{"samples": 1, **options}, shadow_resolution=128)
         named = (value if isinstance(value, str) else key for key, value in options.items())
         yield "-".join((name, method, *named)), lambda n=name, s=settings: (*small(*makers[n]()), s), None
@@ -187,6 +185,13 @@ def cases():
         yield f"crowded {seed}", lambda s=seed: random_pictures.crowded_case(s), None
     for name, case in rare_pictures.rare_cases().items():
         yield name, lambda c=case: c, None
+
+
+def _agreement():
+    """The checkout's modules of scenes and of their settings; in one of before they were parted, both are the test."""
+    if Path("tests/rendering/agreement_scenes.py").exists():
+        return [import_module(f"tests.rendering.agreement_{name}") for name in ("scenes", "shots")]
+    return [import_module("tests.rendering.test_agreement")] * 2
 
 
 def small(scene, camera):

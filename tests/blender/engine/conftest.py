@@ -8,6 +8,8 @@ import pytest
 from splat_addon.blender.geometry.attributes import write_surfels
 from splat_addon.blender.geometry.points_proxy import show_as_points
 from splat_addon.quaternions import axes_quaternions
+from splat_addon.rendering.scene import polygons
+from splat_addon.rendering.upload import resources, storages
 from splat_addon.surfels import Surfels
 
 IMAGE_FORMATS = {"OPEN_EXR": "IMAGE", "OPEN_EXR_MULTILAYER": "MULTI_LAYER_IMAGE"}
@@ -222,3 +224,38 @@ def assert_same_picture():
         assert different <= ties
 
     return check
+
+
+@pytest.fixture
+def slanting(scene, add_camera):
+    """The scene in 64 x 64 pixels, lit as Cycles lights it, seen from above at a slant."""
+    scene.surfel_splatting.shading, scene.surfel_splatting.supersampling = "principled", 2
+    scene.render.resolution_x = scene.render.resolution_y = 64
+    add_camera((0, -6, 5), (0.87, 0, 0), lens=60)
+    return scene
+
+
+@pytest.fixture
+def packed_polygons(monkeypatch):
+    """The list of the polygons packed for the device, in order."""
+    made, pack = [], polygons.pack_polygons
+    monkeypatch.setattr(resources, "pack_polygons", lambda shape: made.append(shape) or pack(shape))
+    return made
+
+
+@pytest.fixture
+def live(scene, add_camera):
+    """The scene with Render Meshes as Surfels at resolution 32, seen from above."""
+    add_camera(location=(0, 0, 10))
+    scene.surfel_splatting.render_meshes = "SURFELS"
+    scene.surfel_splatting.mesh_resolution = 32
+    scene.surfel_splatting.detail_tolerance = 0  # merged surfels would count
+    return scene.surfel_splatting
+
+
+@pytest.fixture
+def packed_surfels(monkeypatch):
+    """The list of surfels packed for the device, in order."""
+    packed, pack = [], storages.pack_surfels
+    monkeypatch.setattr(storages, "pack_surfels", lambda surfels, order: packed.append(surfels) or pack(surfels, order))
+    return packed
