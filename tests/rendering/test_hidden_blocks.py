@@ -84,10 +84,9 @@ def test_no_method_draws_another_picture(method, render, monkeypatch):
 @pytest.mark.parametrize(
     ("camera", "settings"),
     [
-        ("perspective", {"samples": 4}),
+        ("perspective", {"samples": 2}),
         ("parallel", {"supersampling": 2, "detail_tolerance": 4.0}),
-        ("inside", {"storage": "16-bit"}),
-        ("inside", {"samples": 2}),
+        ("inside", {"storage": "16-bit", "samples": 2}),
     ],
 )
 def test_no_setting_draws_another_picture(settings, camera, render, monkeypatch):

@@ -159,9 +159,15 @@ def first_level(surfels):
     return half(nodes, levels[0].numbers - len(surfels))
 
 
+@pytest.fixture(scope="module")
+def plain_torus():
+    """One set of surfels, whose hierarchy is built once, without shadows."""
+    return scenes.torus(32_000, SIZE)
+
+
 @pytest.mark.parametrize("method", METHODS)
-def test_every_method_draws_them(method, render):
-    scene, camera = far_torus()
+def test_every_method_draws_them(method, plain_torus, render):
+    scene, camera = plain_torus
     # surfels of twice the size merge as far at a higher tolerance
     merging = replace(SOME, detail_tolerance=1.5 * SOME.detail_tolerance) if method in HALVED else SOME
     every, some = (

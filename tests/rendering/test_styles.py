@@ -31,7 +31,6 @@ from tests.plain import sample_mesh
 
 SIZE = (48, 32)
 RAMP = Ramp(np.array([(0.1, 0.0, 0.3), (0.4, 0.5, 0.1), (1.0, 0.9, 0.7)]))
-OTHER_RAMP = Ramp(np.array([(0.9, 0.2, 0.1), (0.1, 0.8, 0.9)]))
 FAST = {"supersampling": 1, "shadow_resolution": 0}
 #: 8 pixels a unit.
 FRONT = Camera.orthographic(look_at((0, -10, 0), (0, 0, 0)), 4.0, SIZE, near=0.1, far=30)
