@@ -56,7 +56,8 @@ def measure(case, renderer: Renderer, options, report) -> list[dict]:
         whole = drawn.get(replace(settings, storage="float32", sum_format="float32"))
         to_float32 = psnr(pairs.result.color, whole.result.color) if whole else math.inf
         rows[-1]["to_float32"] = "" if math.isinf(to_float32) else round(to_float32, 1)
-        rows[-1] |= times(pairs, renderer.device)
+        stats = pairs.result.stats
+        rows[-1] |= {"splats": stats["splats_drawn"], "bytes": stats["texture_bytes"], **times(pairs, renderer.device)}
     return rows
 
 
