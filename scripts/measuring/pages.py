@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from pathlib import Path
 
 from environment import Problem
@@ -33,13 +34,18 @@ def filled(text: str, made: dict[str, str]) -> str:
     return _PLACE.sub(put, text)
 
 
-def fill(docs: Path, made: dict[str, str]) -> list[Path]:
-    """Fill all pages of a folder, and return those that have changed. Raises Problem if something has no place, or a
-    place nothing."""
-    pages = {page: page.read_text(encoding="utf-8") for page in sorted(docs.rglob("*.md"))}
-    wrong = set(made) ^ {name for text in pages.values() for name in names(text)}
+def check(docs: Path, made: Iterable[str]) -> None:
+    """Raises Problem unless the pages of a folder have places for these names, and for no others."""
+    pages = (page.read_text(encoding="utf-8") for page in docs.rglob("*.md"))
+    wrong = set(made) ^ {name for text in pages for name in names(text)}
     if wrong:
         raise Problem(f"What is measured and what {docs} has places for differ: {', '.join(sorted(wrong))}.")
+
+
+def fill(docs: Path, made: dict[str, str]) -> list[Path]:
+    """Fill all pages of a folder, and return those that have changed. Raises as `check`."""
+    check(docs, made)
+    pages = {page: page.read_text(encoding="utf-8") for page in sorted(docs.rglob("*.md"))}
     changed = {page: new for page, text in pages.items() if (new := filled(text, made)) != text}
     for page, text in changed.items():
         write_whole(page, text.encode("utf-8"))

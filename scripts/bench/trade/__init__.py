@@ -21,7 +21,7 @@ from bench.trade.cases import CASES
 from bench.trade.choices import CHOICES
 from bench.trade.kept import Kept
 from environment import ROOT, Problem
-from measuring.pages import fill
+from measuring.pages import check, fill
 from measuring.report import Table
 from splat_addon.rendering import Renderer, open_device
 
@@ -55,6 +55,7 @@ def run(options, report) -> None:
     if options.pages and (options.quick or options.scenes or set(options.parts) != set(PARTS)):
         raise Problem("--pages writes whole runs into the docs: leave out --quick, --scenes and --parts.")
     if options.pages:
+        check(ROOT / "docs", {"run", *(name for part in PARTS.values() for name in part.made([]))})
         report.pictures = ROOT / "docs" / "trade"
     renderer = Renderer(open_device(options.device))
     kept = Kept(options.out / "rows.json", _of(options), _device(renderer), options.resume)
@@ -82,8 +83,8 @@ def run_part(name: str, renderer: Renderer, options, report, kept: Kept) -> dict
             skipped[unit] = str(error)
             report.say(f"**Skipped: {unit}**. {error}.")
         print(f"{name}, {unit}: {perf_counter() - begun:.0f} s", flush=True)
-    if not rows:
-        raise Problem(f"Nothing was measured. {'; '.join(skipped.values())}.")
+    if not rows or (skipped and options.pages):
+        raise Problem(f"{'Not all' if rows else 'Nothing'} was measured. {'; '.join(skipped.values())}.")
     columns = dict.fromkeys(key for row in rows for key in row)
     report.csv(name, [{key: row.get(key, "") for key in columns} for row in rows])
     made = part.made(rows)
