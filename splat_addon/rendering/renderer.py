@@ -260,7 +260,7 @@ class Renderer:
         frame_plan = plan(scene, camera, settings, history=before, probes=probes, **options)
         check_samplers(frame_plan, self.device.max_samplers)
         told = {"is_repeatable": is_repeatable, "whole": whole, "eye": eye, "is_draft": is_draft, "panes": panes}
-        seen = (known, None, None) if known else self._reflected(scene, camera, settings, frame_plan, told)
+        seen = self._reflected(scene, camera, settings, frame_plan, told, known)
         light = self._bounced(whole, frame_plan, settings, eye, is_draft)
         return Shared(scene, frame_plan, settings, repeated, before, *seen, light, panes)
 
@@ -272,16 +272,19 @@ class Renderer:
             return self.bounced.of(whole, eye, settings.bounces, is_draft)
         return self.bounced.of_crowns(whole) if frame_plan.found.get(crowns.crowns) else None
 
-    def _reflected(self, scene: Scene, camera: Camera, settings: Settings, frame_plan: FramePlan, told: dict):
+    def _reflected(
+        self, scene: Scene, camera: Camera, settings: Settings, frame_plan: FramePlan, told: dict,
+        known: ProbePictures | None,
+    ):  # fmt: skip
         """What the plan's probes and mirror see, and the camera, drawn if anything in it has changed; None for what it
-        lacks. told: options of `_planned`."""
+        lacks. told: options of `_planned`. known: what probes saw, if the picture is of what is reflected."""
 
         def draw(seen: Scene, camera: Camera, of: Viewers, plain: Settings, known: ProbePictures | None) -> Frame:
             shared = self._planned(seen, camera, plain, viewers=of, known=known, **told)
             return self._frame(shared, camera, None, None)
 
-        found, kept, known = frame_plan.found, self.probes, None
-        if probes := found.get(reflections.probes):
+        found, kept = frame_plan.found, self.probes
+        if known is None and (probes := found.get(reflections.probes)):
             how = told["is_draft"], told["is_repeatable"]
             known = kept.pictures(scene, probes, found[reflections.side], settings, draw, *how)
         mirror, of = found.get(mirrors.mirror), (camera, settings, known, draw)

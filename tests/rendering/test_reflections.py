@@ -520,3 +520,22 @@ def test_no_rim_of_a_box_shows_on_a_floor_in_it(render):
     bare = render(scene, view, replace(SETTINGS, reflections=False)).color[32, :, :3]
     assert np.abs(row - bare).max() > 0.01
     assert np.abs(np.diff(row, axis=0)).max() < 0.25 * np.abs(row - bare).max()
+
+
+@pytest.mark.parametrize("kind", ["a mirror", "a probe"])
+def test_reflections_show_what_is_behind_glass(kind, render):
+    """Behind the camera glows a wall, in front of which stands a pane that only tints, from both sides."""
+    tint = np.array((0.5, 0.9, 0.7))
+    clear = Material(roughness=0.0, ior=1.0, finish=Finish(transmission=1.0, tint_power=1.0))
+
+    def wall(y, turned, material, color):
+        places = [(-9, y, -9), (9, y, -9), (9, y, 9), (-9, y, 9)]
+        faces = [(0, 1, 2), (0, 2, 3)] if turned else [(0, 2, 1), (0, 3, 2)]
+        return PolygonInstance(make_polygons(places, faces, color=(*color, 1)), materials=(material,))
+
+    shiny = ball(radius=0.5) if kind == "a probe" else wall(0.0, True, CHROME, (1, 1, 1))
+    sides = [wall(-5.0, False, clear, tint), wall(-5.1, True, clear, tint)]
+    seen = Scene(polygons=[shiny, *sides, wall(-6.0, False, glowing(RED), (0, 0, 0))], world=(0.2, 0.2, 0.2))
+    view = Camera.perspective(look_at((0.0, -4, 1.0), (0, 0, 1)), 0.05, (8, 8), near=0.1, far=50)
+    ours = render(seen, view, replace(SETTINGS, refraction=True)).color[..., :3].reshape(-1, 3)
+    assert ours == pytest.approx(np.tile(tint**2 * RED, (64, 1)), abs=0.02)

@@ -60,7 +60,7 @@ class Probes:
                 return kept
 
         def taken(probe: Probe, known: ProbePictures | None) -> Frame:
-            seen, chosen = self._seen(scene, probe.left_out, settings), _reflecting(plain, known)
+            seen, chosen = _left_out(scene, probe.left_out), _reflecting(plain, known)
             panorama = _panorama(scene, probe, (side + 2, side + 2))
 
             def drawn(camera, of, settings, progress) -> Frame:
@@ -85,7 +85,7 @@ class Probes:
         view = behind.matrix_world.tobytes(), behind.window, behind.size, behind.near, behind.far
         made_from = mirror, view, behind.is_orthographic, plain, known, settings.refraction, contents(scene)
         if self._mirrored is None or self._mirrored[0] != made_from:
-            seen = draw(self._seen(scene, mirror.left_out, settings), behind, Viewers(behind, (behind,)), plain, known)
+            seen = draw(_left_out(scene, mirror.left_out), behind, Viewers(behind, (behind,)), plain, known)
             self._mirrored = made_from, MirrorPicture(mirror, behind, seen)
         return self._mirrored[1]
 
@@ -100,7 +100,7 @@ class Probes:
         view = wider.matrix_world.tobytes(), wider.window, wider.size, wider.near, wider.far
         made_from = view, wider.is_orthographic, plain, known, of_scene, settings.refraction, is_behind_glass
         if self._screen is None or self._screen[0] != made_from:
-            of = self.apart.without(scene) if is_behind_glass else self._seen(scene, (), settings)
+            of = self.apart.without(scene) if is_behind_glass else _left_out(scene, ())
             self._screen = made_from, ScreenPicture(wider, draw(of, wider, Viewers(wider, (wider,)), plain, known))
         return self._screen[1]
 
@@ -110,11 +110,6 @@ class Probes:
         if self._surfaces is None or self._surfaces[0] != of_scene:
             self._surfaces = of_scene, surfaces_of(scene.table)
         return self._surfaces[1]
-
-    def _seen(self, scene: Scene, rows: tuple[int, ...], settings: Settings) -> Scene:
-        """The scene in which what is in these rows of its table, and clear glass, only casts its shadow."""
-        seen = _left_out(scene, rows)
-        return self.apart.without(seen) if settings.refraction else seen
 
     def forget(self) -> None:
         self._kept = self._mirrored = self._surfaces = self._screen = None
