@@ -255,3 +255,21 @@ def test_a_lamp_shines_through_rough_glass(kind, render):
     mirrored, _ = specular_albedo(np.full(len(places), rough), -dot(along, down), f0, np.ones((len(places), 1)))
     true = (1 - mirrored) * lamp_radiance(left, -np.array(sun.direction), 2.0)
     assert true.max() > 3 * true.min() and ours == pytest.approx(true, rel=0.03)
+
+
+@pytest.mark.parametrize("kind", ["polygons", "surfels"])
+@pytest.mark.parametrize("up", [1, -1])
+def test_a_sheet_tints_once_whichever_side_is_seen(kind, up, render):
+    """What glows behind it is seen through it, and a lamp shines through it on the floor, in its color."""
+    thin = Material(roughness=0.0, ior=1.0, finish=Finish(transmission=1.0, is_thin=True))
+    only = pane(kind, 1.0)
+    sheet = only["surfels"][0] if kind == "surfels" else only["polygons"][1]
+    turn = np.diag((1.0, up, up, 1.0))
+    turn[2, 3] = 0.5 - up
+    sheet = replace(sheet, materials=(thin,), matrix_world=turn)
+    sun = Light("sun", energy=np.pi, direction=(0, 0, -1), casts_shadow=True)
+    above = Camera.perspective(look_at((0, -0.5, 2.5), (0, 0, 0)), 0.1, (8, 8), near=0.01, far=50)
+    of = {"polygons": [FLOOR], "surfels": [sheet]} if kind == "surfels" else {"polygons": [FLOOR, sheet]}
+    for view, power in ((BELOW, 1), (above, 2)):
+        ours = render(Scene(**of, lights=(sun,)), view, SETTINGS).color[..., :3].reshape(-1, 3)
+        assert ours == pytest.approx(np.tile(TINT**power, (len(ours), 1)), abs=0.01)

@@ -14,6 +14,7 @@ from typing import Any
 import bpy
 
 from ..conversion.placement import is_uneven
+from ..materials.graphs.channels import constant_of
 from ..materials.node_walks import has_volume
 from ..materials.surface_shaders import Shader
 
@@ -21,7 +22,6 @@ from ..materials.surface_shaders import Shader
 #: with another, such as a coat's roughness with its weight, are not listed.
 SOCKETS = {
     "BSDF_PRINCIPLED": {
-        "Thin Wall": False,
         "Diffuse Roughness": 0.0,
         "Subsurface Weight": 0.0,
         "Anisotropic": 0.0,
@@ -65,8 +65,15 @@ def of_material(material: bpy.types.Material, shaders: list[Shader]) -> Iterator
 def _unsupported(shader: Shader) -> Iterator[str]:
     enabled = {socket.name for socket in shader.node.inputs if socket.enabled}
     for name, value in SOCKETS.get(shader.node.type, {}).items():
+        if name == "Subsurface Weight" and _is_thin(shader):
+            continue
         if name in enabled and not _does_nothing(shader.socket(name), value):
             yield name
+
+
+def _is_thin(shader: Shader) -> bool:
+    """Whether half of what is scattered below a surface leaves on its other side, which this engine shows."""
+    return "Thin Wall" in shader.node.inputs and any(constant_of(shader, "Thin Wall") or ())
 
 
 def _does_nothing(socket: bpy.types.NodeSocket, neutral: Any) -> bool:

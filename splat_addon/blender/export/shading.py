@@ -145,7 +145,7 @@ def _plain_material(material: bpy.types.Material | None, notes, own: Collection[
     mixed = list(parts(shader, mix_factor)) if shader else []
     if any(part.shader.node.type == "HOLDOUT" for part in mixed):
         notes.add(f"The material {material.name!r} mixes a Holdout, through which this engine shows what lies behind")
-    mixed = [part for part in mixed if part.shader.node.type not in CLEAR]
+    mixed = [part for part in mixed if part.shader == shader or part.shader.node.type not in CLEAR]
     known = [part for part in mixed if part.shader.node.type in _SHADERS]
     if not known:
         notes.add(
@@ -185,6 +185,7 @@ def _mean(materials: list[Material], mixed: list[Part]) -> Material:
 def _made(shader: Shader, material: bpy.types.Material, notes, own: Collection[str]) -> Material:
     """The material of one of its shaders."""
     fields, make = _SHADERS[shader.node.type]
+    fields = {name: field for name, field in fields.items() if name in shader.node.inputs}
     constants = {name: constant_of(shader, name) for name in fields if shader.socket(name).is_linked}
     plain = {name: _value(shader, name, constants.get(name)) for name in fields}
     if emission := [name for name, field in fields.items() if field == "emission"]:
@@ -216,9 +217,12 @@ def _value(shader: Shader, name: str, fed: tuple[float, ...] | None):
 def _principled(plain: dict) -> Material:
     ior = _levelled(plain["IOR"], plain["Specular IOR Level"])
     sent = _sent(plain, "Emission Color", "Emission Strength")
+    is_thin = bool(plain.get("Thin Wall"))  # Blender 5.2 has it
     finish = Finish(
         specular_tint=plain["Specular Tint"][:3],
         transmission=plain["Transmission Weight"],
+        is_thin=is_thin,
+        translucency=plain["Subsurface Weight"] / 2 if is_thin else 0.0,
         **_coat(plain),
         **_sheen(plain),
     )
@@ -254,6 +258,8 @@ def _sent(plain: dict, color: str, strength: str) -> tuple[float, float, float]:
 
 _GLASS_SOCKETS = {"Roughness": "roughness", "IOR": ""}
 _GLASS = Finish(transmission=1.0, tint_power=1.0)
+#: A Transparent BSDF that is not white.
+_TINTED = Finish(transmission=1.0, is_thin=True)
 #: A surface without a coat.
 _MATT = ({}, lambda plain: Material(roughness=1.0, ior=1.0))
 
@@ -275,6 +281,8 @@ _SHADERS = {
             "Sheen Roughness": "",
             "Sheen Tint": "",
             "Transmission Weight": "",
+            "Thin Wall": "",
+            "Subsurface Weight": "",
             "Emission Color": "emission",
             "Emission Strength": "emission",
         },
@@ -291,6 +299,7 @@ _SHADERS = {
         _GLASS_SOCKETS,
         lambda plain: Material(plain["Roughness"], ior=plain["IOR"], finish=replace(_GLASS, specular_tint=BLACK)),
     ),
+    "BSDF_TRANSPARENT": ({}, lambda plain: Material(roughness=0.0, ior=1.0, finish=_TINTED)),
     "BSDF_DIFFUSE": _MATT,
     "BSDF_TRANSLUCENT": ({}, lambda plain: Material(roughness=1.0, ior=1.0, finish=Finish(translucency=1.0))),
     "SUBSURFACE_SCATTERING": _MATT,

@@ -33,13 +33,16 @@ class Mean:
 def mean_of(shader: Shader) -> Mean:
     """What a tree of shaders looks like."""
     mixed = list(parts(shader, mix_factor))
-    if len(mixed) == 1 and mixed[0].is_sure and mixed[0].share == 1 and mixed[0].shader.node.bl_idname in SHADERS:
-        only = mixed[0].shader
-    else:
-        only = None
+    alone = mixed[0].shader if len(mixed) == 1 and mixed[0].is_sure and mixed[0].share == 1 else None
+    is_read = alone is not None and alone.node.bl_idname in SHADERS
+    # mixed with nothing, a tinted Transparent BSDF covers what is behind it
+    only = alone if is_read and (alone.node.type not in CLEAR or (alone == shader and not alone.is_clear)) else None
     unsure: set[str] = set() if all(part.is_sure for part in mixed) else {"color", "opacity", "emission"}
     color, emission, through = np.zeros(3), np.zeros(3), 0.0
     for part in mixed:
+        if only is None and part.shader.node.type in CLEAR:
+            through += part.share
+            continue
         opacity = _value(part, "opacity", 1.0, unsure)[0]
         through += part.share * (1 - opacity)
         color += part.share * opacity * _value(part, "color", 0.8, unsure)
@@ -58,7 +61,7 @@ def _value(part: Part, channel: str, default: float, unsure: set[str]) -> np.nda
     default: of shaders that lack it.
     """
     node = part.shader.node
-    if node.type in CLEAR or (channel == "color" and node.type == "EMISSION"):
+    if channel == "color" and node.type == "EMISSION":
         return np.zeros(3)
     names = SHADERS.get(node.bl_idname, {}).get(channel, ())
     if not names and channel == "color":

@@ -82,17 +82,21 @@ class _Reading(Walk):
         return constant(socket)
 
     def arrived(self, read: Product, socket: Socket) -> Product:
-        return read.weighted(luminance()) if socket.type == "VALUE" else read
+        return read.weighted(luminance()) if socket.type in NUMBERS else read
 
     def reader(self, node: Node, output: str) -> Callable[[], Product] | None:
         found = _READERS.get((node.bl_idname, output))
         return found and partial(found, node, self.read)
 
 
+#: Types of sockets with a single number.
+NUMBERS = ("VALUE", "BOOLEAN")
+
+
 def constant(socket: Socket) -> Product:
     """The socket's own value."""
     value = socket.default_value
-    return Product((float(value),)) if socket.type == "VALUE" else Product(tuple(float(c) for c in value[:3]))
+    return Product((float(value),)) if socket.type in NUMBERS else Product(tuple(float(c) for c in value[:3]))
 
 
 #: Reads a socket farther up the tree.

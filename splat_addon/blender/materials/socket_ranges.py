@@ -28,6 +28,8 @@ _RANGES = {
     "Sheen Weight": (0.0, 1.0),
     "Sheen Roughness": (0.0, 1.0),
     "Sheen Tint": (0.0, MAX_FACTOR),
+    "Transmission Weight": (0.0, 1.0),
+    "Subsurface Weight": (0.0, 1.0),
 }
 
 #: Shaders whose colour is multiplied by a strength, so that only the product has a limit.

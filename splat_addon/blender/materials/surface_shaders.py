@@ -10,7 +10,7 @@ from typing import Any
 import bpy
 
 from ..working_space import luminance
-from .node_products import Product, constant, product
+from .node_products import NUMBERS, Product, constant, product
 from .node_trees import uses_nodes
 from .node_walks import MAX_CHAIN, has_volume, linked, outer, passed_through_link, within
 from .socket_ranges import finite_factors, has_range, in_range
@@ -36,6 +36,7 @@ SHADERS = {
     "ShaderNodeBsdfMetallic": {"color": ("Base Color",), "roughness": ("Roughness",), "normal_map": ("Normal",)},
     "ShaderNodeBsdfGlass": _GLOSSY,
     "ShaderNodeBsdfRefraction": _GLOSSY,
+    "ShaderNodeBsdfTransparent": {"color": ("Color",)},
     "ShaderNodeBsdfTranslucent": {"color": ("Color",), "normal_map": ("Normal",)},
     "ShaderNodeSubsurfaceScattering": {"color": ("Color",), "normal_map": ("Normal",)},
     "ShaderNodeBsdfToon": {"color": ("Color",), "normal_map": ("Normal",)},
@@ -86,7 +87,7 @@ class Shader:
 
     def _own(self, name: str) -> Product:
         read = constant(self.socket(name))
-        number = self.node.inputs[name].type == "VALUE"
+        number = self.node.inputs[name].type in NUMBERS
         return read.weighted(luminance()) if number else Product(read.value * (3 // len(read.value)))
 
     def _taken(self, name: str, read: Product) -> Product:
@@ -148,9 +149,7 @@ def why_unseen(material: bpy.types.Material) -> str | None:
         return "has no surface but a volume, which is not drawn" if has_volume(material.node_tree) else None
     if shader.node.mute or shader.node.type != "BSDF_TRANSPARENT":
         return None
-    if shader.is_clear:
-        return "is a Transparent BSDF, through which everything is seen"
-    return "is a tinted Transparent BSDF, through which this engine shows everything untinted"
+    return "is a Transparent BSDF, through which everything is seen" if shader.is_clear else None
 
 
 @dataclass(frozen=True)

@@ -19,6 +19,7 @@ class Finish:
     sheen: how much of the surface fibres cover, 0 to 1. sheen_roughness: of their layer. sheen_tint: (3,) their colour.
     transmission: how much of what is not metal is glass, 0 to 1. tint_power: a crossing of the surface keeps the base
         colour to this power; 0.5 for light that crosses a wall's two surfaces to keep the base colour.
+    is_thin: what is glass is a sheet, which light enters and leaves at once, whatever its shape.
     translucency: how much of the diffuse light leaves on the other side of the surface, 0 to 1.
     """
 
@@ -32,6 +33,7 @@ class Finish:
     sheen_tint: tuple[float, float, float] = (1.0, 1.0, 1.0)
     transmission: float = 0.0
     tint_power: float = 0.5
+    is_thin: bool = False
     translucency: float = 0.0
 
     def __post_init__(self):

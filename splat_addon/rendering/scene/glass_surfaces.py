@@ -23,6 +23,8 @@ ROW_BITS = 9
 MOST_PRIMITIVES = 1 << 21
 #: Square of the sine of a triangle's angle, at least; of one that is thinner nothing is met.
 _THINNEST = 1e-10
+#: Thickness of sheets, as a share of the diagonal of an object's box.
+_SHEET = 1e-3
 #: A box of nothing begins here and ends at the negative of it.
 _OUTSIDE = 1e30
 
@@ -157,7 +159,27 @@ def _primitives(placed: Placed, which: np.ndarray, origin: np.ndarray) -> tuple[
     if not is_disc and np.linalg.det(linear) < 0:
         corners, normals = corners[:, [0, 2, 1]], normals[:, [0, 2, 1]]
     are_discs, cast = (np.full(len(corners), value) for value in (is_disc, placed.casts_shadow))
-    return corners, normals, are_discs, tints, ior, roughness, cast
+    made = corners, normals, are_discs, tints, ior, roughness, cast
+    thin = np.array([m.finish.is_thin for m in materials])[np.searchsorted(np.unique(slots), slots)]
+    return _with_backs(made, np.flatnonzero(thin)) if thin.any() else made
+
+
+def _with_backs(made: tuple[np.ndarray, ...], rows: np.ndarray) -> tuple[np.ndarray, ...]:
+    """The arrays of an object in which these rows are sheets: each is parted into a front and a back."""
+    corners, normals, are_discs = (np.array(array) for array in made[:3])
+    sides, facing = _sides(corners[rows], normals[rows, 0], are_discs[rows])
+    facing /= np.maximum(np.linalg.norm(facing, axis=1, keepdims=True), 1e-30)
+    middles = corners[:, 0]
+    half = _SHEET / 2 * np.linalg.norm(np.ptp(middles, axis=0)) + _SHEET * np.sqrt((sides**2).sum(axis=2)).max() / 2
+    moved = np.where(are_discs[rows, None, None], (1, 0, 0), (1, 1, 1)).reshape(-1, 3, 1) * half * facing[:, None]
+    back, turned = corners[rows] - moved, normals[rows][:, [0, 2, 1]] * -1
+    corners[rows] += moved
+    back = np.where(are_discs[rows, None, None], back, back[:, [0, 2, 1]])
+    fronts = corners, normals, *made[2:]
+    return tuple(
+        np.concatenate([one, other])
+        for one, other in zip(fronts, (back, turned, *(a[rows] for a in made[2:])), strict=True)
+    )
 
 
 def _ior(material) -> float:

@@ -11,6 +11,7 @@ from splat_addon.blender.engine.render_passes import RENDER_PASSES, absent_passe
 from splat_addon.blender.export import passed_over
 from splat_addon.blender.export.notes import Notes
 from splat_addon.blender.export.shading import shading_material
+from splat_addon.blender.materials.material_surfaces import plain_color
 from splat_addon.blender.materials.surface_shaders import SHADERS
 
 #: Sockets that only matter if another one is above 0: prefix -> the other socket.
@@ -33,6 +34,7 @@ ONCE_FOR_A_MATERIAL = (
     "Coat Tint",
     "Sheen Weight",
     "Transmission Weight",
+    "Thin Wall",
     "Sheen Roughness",
     "Sheen Tint",
 )
@@ -84,6 +86,8 @@ def test_a_socket_that_is_passed_over_is_named_when_it_is_set_or_linked(principl
 
 @pytest.mark.parametrize("name", ONCE_FOR_A_MATERIAL)
 def test_a_socket_that_is_read_once_for_a_material_is_named_when_it_is_linked(principled, name):
+    if name not in principled.inputs:
+        pytest.skip("this Blender's Principled BSDF does not have it")
     tree = bpy.data.materials["paint"].node_tree
     tree.links.new(tree.nodes.new("ShaderNodeValue").outputs[0], principled.inputs[name])
     assert said_of(principled) == []
@@ -362,3 +366,26 @@ def test_grease_pencil_is_drawn_by_blender_without_a_warning(scene, add_camera, 
     bpy.ops.object.grease_pencil_add(type="MONKEY")
     assert 0.05 < picture()[..., 3].mean() < 0.5
     assert final_render.last_frame_stats["notes"] == []
+
+
+def test_what_is_scattered_below_a_thin_wall_is_shown(principled):
+    """Half of it leaves on the other side, as in Cycles, whose thin walls are sheets."""
+    if "Thin Wall" not in principled.inputs:
+        pytest.skip("this Blender's Principled BSDF does not have it")
+    principled.inputs["Thin Wall"].default_value = True
+    principled.inputs["Subsurface Weight"].default_value = 0.5
+    notes = Notes()
+    finish = shading_material(bpy.data.materials["paint"], notes).finish
+    assert notes.sentences() == [] and finish.is_thin and finish.translucency == 0.25
+
+
+def test_a_tinted_transparent_shader_is_a_sheet_that_bends_nothing(principled):
+    material = bpy.data.materials["paint"]
+    nodes, output = material.node_tree.nodes, material.node_tree.get_output_node("ALL")
+    clear = nodes.new("ShaderNodeBsdfTransparent")
+    clear.inputs["Color"].default_value = (0.2, 0.4, 0.8, 1)
+    material.node_tree.links.new(clear.outputs[0], output.inputs["Surface"])
+    notes = Notes()
+    made = shading_material(material, notes)
+    assert notes.sentences() == [] and made.ior == 1 and made.finish.is_thin and made.finish.transmission == 1
+    assert plain_color(material)[0] == pytest.approx((0.2, 0.4, 0.8, 1))
