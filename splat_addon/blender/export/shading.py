@@ -145,6 +145,11 @@ def _plain_material(material: bpy.types.Material | None, notes, own: Collection[
     mixed = list(parts(shader, mix_factor)) if shader else []
     if any(part.shader.node.type == "HOLDOUT" for part in mixed):
         notes.add(f"The material {material.name!r} mixes a Holdout, through which this engine shows what lies behind")
+    if any(part.shader != shader and _is_tinted(part.shader) for part in mixed):
+        notes.add(
+            f"The material {material.name!r} mixes a tinted Transparent BSDF, through which this engine shows "
+            "everything untinted"
+        )
     mixed = [part for part in mixed if part.shader == shader or part.shader.node.type not in CLEAR]
     known = [part for part in mixed if part.shader.node.type in _SHADERS]
     if not known:
@@ -168,6 +173,10 @@ def _plain_material(material: bpy.types.Material | None, notes, own: Collection[
         sent = finite_radiance(mean_of(shader).sent, f"The material {material.name!r}", notes)
         made = [replace(_mean(made, known), emission=sent)]
     return replace(made[0], index=material.pass_index)
+
+
+def _is_tinted(shader: Shader) -> bool:
+    return shader.node.type == "BSDF_TRANSPARENT" and not shader.is_clear
 
 
 def _mean(materials: list[Material], mixed: list[Part]) -> Material:

@@ -389,3 +389,8 @@ def test_a_tinted_transparent_shader_is_a_sheet_that_bends_nothing(principled):
     made = shading_material(material, notes)
     assert notes.sentences() == [] and made.ior == 1 and made.finish.is_thin and made.finish.transmission == 1
     assert plain_color(material)[0] == pytest.approx((0.2, 0.4, 0.8, 1))
+    mix = nodes.new("ShaderNodeMixShader")
+    material.node_tree.links.new(clear.outputs[0], mix.inputs[1])
+    material.node_tree.links.new(principled.outputs[0], mix.inputs[2])
+    material.node_tree.links.new(mix.outputs[0], output.inputs["Surface"])
+    assert any("mixes a tinted Transparent BSDF" in sentence for sentence in said_of(principled))
