@@ -37,7 +37,7 @@ class Bounced:
         return self._kept[1]
 
     def of_crowns(self, scene: Scene) -> BouncedLight:
-        """As of `crowns_of`; the same object as long as the scene is."""
+        """What `crowns_of` gives; the same object as long as the scene is."""
         made_from = "crowns", contents(scene, _NO_MATTER | {"lights", "world", "environment"})
         if self._kept is None or self._kept[0] != made_from:
             self._kept = made_from, crowns_of(scene)
