@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Surfaces that reflect what stands around them, beside Cycles: balls of metal, a car's paint, a wet floor, contact.
+"""Surfaces that reflect what stands around them, beside Cycles: balls of metal, a car's paint, a wet floor, contact, a
+kitchen, a street.
 
 *PSNR* is that of sRGB, clamped above white, within the pixels of what reflects. Meshes are drawn as polygons with the
 settings of *Balanced*; Cycles takes the same meshes. The figures show ours, Cycles and four times the difference.
@@ -20,7 +21,7 @@ from splat_addon.reference.metrics import mean_flip, psnr, srgb
 from splat_addon.rendering.presets import PRESETS
 from splat_addon.whole_files import whole_file
 
-from . import glass
+from . import glass, places
 from .objects import car_paint, contact, metal, principled, wet_floor
 
 #: Amplification of the difference in the figure.
@@ -124,6 +125,8 @@ SCENES = {
     "rough": ((0.5, 0.6, 0.75), _EYE, _TARGET, 50, metal(0.35)),
     "paint": ((0.5, 0.6, 0.75), _EYE, _TARGET, 50, car_paint),
     "wet": ((0.5, 0.6, 0.75), _EYE, _TARGET, 40, wet_floor),
+    "kitchen": ((0.6, 0.62, 0.65), (0.9, -2.4, 1.75), (0, 0.8, 0.8), 35, places.kitchen),
+    "street": ((0.5, 0.6, 0.75), (1.2, -3.6, 1.1), (0, 0.2, 0.5), 40, places.street),
     "bottle": ((0.5, 0.6, 0.75), _EYE, (0, 0.1, 0.6), 50, glass.bottle),
     "window": ((0.5, 0.6, 0.75), _EYE, (0, 0.1, 0.5), 50, glass.window),
     "lamp": ((0.3, 0.36, 0.45), _EYE, (0, 0.1, 0.6), 50, glass.lamp),

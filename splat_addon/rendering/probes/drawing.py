@@ -95,7 +95,8 @@ class Probes:
     ) -> ScreenPicture:  # fmt: skip
         """What a camera sees: the same object as long as both stay. known: what the probes see. is_behind_glass:
         whether it is seen through glass; otherwise only what reflections show is in it."""
-        plain = replace(_reflecting(_plain(settings), known), supersampling=2)
+        # what is reflected is made smaller by most surfaces
+        plain = replace(_reflecting(_plain(settings), known), supersampling=2 if is_behind_glass else 1)
         wider, of_scene = wider_camera(camera), contents(scene)
         view = wider.matrix_world.tobytes(), wider.window, wider.size, wider.near, wider.far
         made_from = view, wider.is_orthographic, plain, known, of_scene, settings.refraction, is_behind_glass
