@@ -56,6 +56,13 @@ def _block_count(text: str) -> int:
 _DENSITIES = {"resolution": int, "spacing": float, "count": int}
 
 
+def refuse_density(options: argparse.Namespace) -> None:
+    """Raise ValueError for a density where a file is given, whose points are what they are."""
+    for name in _DENSITIES:
+        if getattr(options, name) is not None:
+            raise ValueError(f"--{name} is about objects and changes nothing of a file; leave it out, or name objects.")
+
+
 def add_density_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the arguments that override the sidebar's density."""
     density = parser.add_mutually_exclusive_group()

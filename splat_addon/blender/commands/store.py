@@ -22,7 +22,7 @@ from ..geometry.sources import is_surfel_object
 from ..geometry.surfel_files import file_of
 from ..geometry.world_surfels import world_surfels
 from ..operators.file_paths import file_sentence
-from .convert import add_density_arguments, batch_of, refuse, sources_of
+from .convert import add_density_arguments, batch_of, refuse, refuse_density, sources_of
 from .out_paths import file_at, made_room
 from .points import add_points_arguments, refuse_those_of_files
 
@@ -46,7 +46,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> Iterator[Path]:
     """Store, and yield the written file. Raises ValueError or OSError; then there is no file."""
-    if not options.file:
+    if options.file:
+        refuse_density(options)
+    else:
         refuse_those_of_files(options)
     out = file_at(options.out, SUFFIX, options.file.stem if options.file else "")
     with claimed(made_room(out)):

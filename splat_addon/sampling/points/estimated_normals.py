@@ -13,6 +13,7 @@ from .cleanup import off_surface
 from .noise import NOISY, noise_levels, of_surroundings, smoothed_normals, spacings
 from .normals import local_planes
 from .orientation import consistent_signs, facing_outward, facing_scanners, facing_viewpoint
+from .outside import seen_sides
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,14 +65,18 @@ def estimated_normals(
     normals, is_noisy = planes.normals, noise > NOISY * spacing
     is_untrusted, rows, shifts = np.zeros(len(positions), bool), np.flatnonzero(is_noisy), None
     if len(rows):
-        wider = positions, normals, nearest, rows, lambda share: told(0.25 + 0.35 * share)
+        wider = positions, planes, nearest, rows, lambda share: told(0.25 + 0.35 * share)
         normals[rows], middles, is_untrusted[rows] = smoothed_normals(*wider)
         shifts = np.zeros(positions.shape)
         shifts[rows] = normals[rows] * np.einsum("nc,nc->n", normals[rows], middles)[:, None]
-    signs, part = consistent_signs(positions, normals, nearest, lambda share: told(0.6 + 0.4 * share))
+    is_blind = viewpoint is None and (scanners is None or np.isnan(scanners).any())
+    sides = seen_sides(positions, normals, own, float(np.median(spacing))) if is_blind else None
+    signs, part, faces_outside = consistent_signs(
+        positions, normals, nearest, sides, lambda share: told(0.6 + 0.4 * share)
+    )
     normals *= signs[:, None]
     if viewpoint is None:
-        normals *= facing_outward(positions, normals, part)[:, None]
+        normals *= np.where(faces_outside, 1, facing_outward(positions, normals, part))[:, None]
     else:
         normals *= facing_viewpoint(positions, normals, part, viewpoint)[:, None]
     if scanners is not None:

@@ -15,7 +15,7 @@ import numpy as np
 
 from ...vectors import unit
 from ...workers import in_portions
-from .normals import CHUNK, covariances, least_around, least_planes, local_moments, thicknesses
+from .normals import CHUNK, LocalPlanes, covariances, least_around, least_planes, thicknesses
 
 #: Neighbours of noisy points, as a multiple of those of others.
 WIDER = 1.5
@@ -27,14 +27,14 @@ _AROUND, _MEAN_OVER_LEAST = 16, 1.5
 NOISY = 0.15
 
 #: A normal is not to be trusted if more than this share of the variance around all neighbours is across their planes:
-#: it is 0.03 to 0.05 with noise of half the spacing, and 0.08 to 0.17 for leaves.
-_THICK = 0.06
+#: it is 0.03 to 0.05 with noise of half the spacing, and 0.06 to 0.17 for leaves.
+_THICK = 0.055
 
 #: Radians by which normals differ that are averaged with a weight of 0.6.
-_ALIKE = 0.25
+_ALIKE = 0.2
 
-#: Rounds in which untrusted normals take the mean direction around them.
-_ROUNDS = 2
+#: Rounds in which untrusted normals take the mean of those around them that are alike, and then of all around them.
+_ROUNDS_OF_ALIKE, _ROUNDS = 8, 2
 
 
 def spacings(distances: np.ndarray) -> np.ndarray:
@@ -50,51 +50,59 @@ def noise_levels(roughness: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
 
 def smoothed_normals(
     positions: np.ndarray,
-    normals: np.ndarray,
+    planes: LocalPlanes,
     neighbours: np.ndarray,
     rows: np.ndarray,
     report: Callable[[float], None] = lambda share: None,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Normals of the noisy among N points.
 
-    positions, normals: (N, 3) float64. neighbours: (N, k) indices, `WIDER` than those behind the normals. rows: (n,)
-    ascending, the noisy points. report: called with the finished share.
+    positions: (N, 3) float64. planes: of the points and their neighbours. neighbours: (N, k) indices, `WIDER` than
+    those behind the planes. rows: (n,) ascending, the noisy points. report: called with the finished share.
     Returns (n, 3) unit normals in either direction, (n, 3) a point on each one's plane, relative to the noisy point,
     and (n,) bool, which of the normals are not to be trusted.
     """
-    is_needed = np.zeros(len(positions), bool)
-    is_needed[rows] = is_needed[neighbours[rows]] = True
-    needed = np.flatnonzero(is_needed)
-    place = np.cumsum(is_needed, dtype=np.int32) - 1
-    middles, moments = local_moments(positions, neighbours, needed, lambda share: report(0.4 * share))
-    middles += positions[needed].T
-    thick = thicknesses(moments)
-    moments = moments.astype(np.float32)
-    made, heights, is_thick = np.empty((len(rows), 3)), np.empty((len(rows), 3)), np.empty(len(rows), bool)
+    middles, thick = planes.middles + positions.T, thicknesses(planes.moments)
+    moments = planes.moments.astype(np.float32)
+    normals, heights, is_thick = planes.normals.copy(), np.empty((len(rows), 3)), np.empty(len(rows), bool)
 
     def widened(part: slice):
         own = rows[part]
-        near = place[np.concatenate([neighbours[own].T, own[None]])]
+        near = np.concatenate([neighbours[own].T, own[None]])
         mean, joined = _joined_moments(middles, moments, near)
-        made[part], _ = least_planes(joined)
+        normals[own], _ = least_planes(joined)
         heights[part] = mean.T - positions[own]
         is_thick[part] = thick[near].min(axis=0) > _THICK
 
-    in_portions(len(rows), CHUNK // 4, widened, lambda share: report(0.4 + 0.4 * share))
-    wide = normals.copy()
-    wide[rows] = made
-    columns = np.ascontiguousarray(wide.T, np.float32)
+    in_portions(len(rows), CHUNK // 4, widened, lambda share: report(0.5 * share))
+    _average(normals, neighbours[:, :_AROUND], rows, report=lambda share: report(0.5 + 0.5 * share))
+    return normals[rows], heights, is_thick
+
+
+def _average(
+    normals: np.ndarray,
+    neighbours: np.ndarray,
+    rows: np.ndarray,
+    *,
+    report: Callable[[float], None] = lambda share: None,
+    are_on_sides: bool = False,
+):
+    """Give some of (N, 3) unit normals, in place, the mean of themselves and those of their neighbours that are alike,
+    in either direction unless they are on their sides. neighbours: (N, k) indices."""
+    columns, made = np.ascontiguousarray(normals.T, np.float32), np.empty((len(rows), 3))
 
     def averaged(part: slice):
         own = rows[part]
         at = np.ascontiguousarray(neighbours[own].T)
         near = [column[at] for column in columns]
         cosine = sum(n * column[own] for n, column in zip(near, columns, strict=True))
-        weight = np.sign(cosine) * np.exp((np.abs(cosine) - 1) / np.float32(_ALIKE**2))
-        made[part] = unit(wide[own] + np.stack([np.einsum("kn,kn->n", weight, n) for n in near], axis=1))
+        likeness = cosine if are_on_sides else np.abs(cosine)
+        weight = np.exp((likeness - 1) / np.float32(_ALIKE**2))
+        weight = weight if are_on_sides else np.copysign(weight, cosine)
+        made[part] = unit(normals[own] + np.stack([np.einsum("kn,kn->n", weight, n) for n in near], axis=1))
 
-    in_portions(len(rows), CHUNK, averaged, lambda share: report(0.8 + 0.2 * share))
-    return made, heights, is_thick
+    in_portions(len(rows), CHUNK, averaged, report)
+    normals[rows] = made
 
 
 def _joined_moments(middles: np.ndarray, moments: np.ndarray, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -109,6 +117,8 @@ def of_surroundings(normals: np.ndarray, neighbours: np.ndarray, rows: np.ndarra
     """(n, 3) mean directions around some points, whose own normals are not to be trusted, so that they are lit as their
     surroundings. normals: (N, 3) unit, on their sides."""
     made = normals.copy()
+    for _ in range(_ROUNDS_OF_ALIKE):
+        _average(made, neighbours[:, :_AROUND], rows, are_on_sides=True)
     for _ in range(_ROUNDS):
         means = made[neighbours[rows]].sum(axis=1) + made[rows]
         length = np.linalg.norm(means, axis=1, keepdims=True)

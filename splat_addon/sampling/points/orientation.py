@@ -2,9 +2,9 @@
 """Decides which side of the surface each normal is on, consistently within each connected part.
 
 Hoppe et al. 1992, section 3.3, with the flip criterion of Xie et al. 2003 at sharp edges: the choice is propagated
-along the minimum spanning tree of the neighbour graph, where an edge is cheap if the two tangent planes agree. The tree
-is grown by Boruvka's rounds instead of Prim's queue: in each round every part takes its best edge to another part, all
-at once in numpy. Most edges leave no doubt; what they join is found first, in any order, so that few others are sorted.
+along a tree in the neighbour graph, where tangent planes agree most. The tree is grown by Boruvka's rounds instead of
+Prim's queue: in each round every part joins the one with which its edges together agree most, all at once in numpy.
+Most edges leave no doubt; what they join is found first. Bodies also follow what is seen of them from outside.
 """
 
 from __future__ import annotations
@@ -22,6 +22,10 @@ GRAPH_NEIGHBOURS = 8
 #: are short and therefore often steep.
 _NO_DOUBT, _SHORT = 0.75, 4
 
+#: A part is a body if its points are seen this clearly from one side, on average: bodies from 0.6 to 1, terrain and
+#: range maps, which are seen from both sides, below 0.35.
+_BODY = 0.5
+
 #: Edges per batch.
 _CHUNK = 1 << 15
 
@@ -30,25 +34,39 @@ def consistent_signs(
     positions: np.ndarray,
     normals: np.ndarray,
     neighbours: np.ndarray,
+    sides: tuple[np.ndarray, np.ndarray] | None = None,
     report: Callable[[float], None] = lambda share: None,
-) -> tuple[np.ndarray, np.ndarray]:
-    """(N,) int8 signs, 1 or -1, that make neighbouring normals consistent, and the (N,) connected part of each point.
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(N,) int8 signs, 1 or -1, that make neighbouring normals consistent, the (N,) connected part of each point, and
+    (N,) bool, for which of them the signs make normals face outside.
 
     positions, normals: (N, 3) float64. neighbours: (N, k) indices. Parts are numbered from 0 without gaps.
-    report: called with the share of processed edges.
+    sides: two (N,) of `outside.seen_sides`, or None. report: called with the share of processed edges.
     """
     graph = neighbours[:, :GRAPH_NEIGHBOURS]
     columns, directions = np.ascontiguousarray(positions.T), np.ascontiguousarray(normals.T, np.float32)
     part, flipped = _without_doubt(columns, directions, graph)
     report(0.6)
-    ends = _edges(graph, part)
+    own, column = np.nonzero(part[graph] != part[:, None])
+    ends = np.stack([own.astype(graph.dtype), graph[own, column]])
     agreement = _agreement(columns, directions, *ends)
-    # 16 bits are enough to tell good edges from bad ones, and allow a radix sort.
-    order = np.argsort((65535 * (1 - np.minimum(np.abs(agreement), 1))).astype(np.uint16), kind="stable")
-    ends, turned = ends[:, order], agreement[order] < 0
-    label, flips = _joined(part[ends], turned ^ flipped[ends[0]] ^ flipped[ends[1]], int(part.max(initial=-1)) + 1)
+    votes = np.where(flipped[ends[0]] ^ flipped[ends[1]], -agreement, agreement)
+    outside = int(part.max(initial=-1)) + 1
+    label, flips = _joined(part[ends], votes, outside)
+    faces_outside = np.zeros(len(part), bool)
+    if sides is not None:
+        more, both = sides
+        of_parts = (np.bincount(label[part], amount) for amount in (np.abs(more), both))
+        faces_outside = np.greater(next(of_parts), _BODY * next(of_parts))[label[part]]
+        # the outside is one more part, with which each part of a body agrees as far as it is seen from there
+        clear = more * np.abs(more) / np.maximum(both * both, np.float32(1e-12))
+        seen = np.bincount(part, np.where(faces_outside, np.where(flipped, -clear, clear), 0), outside)
+        bodies = np.flatnonzero(seen)
+        ends = np.concatenate([part[ends], [bodies, np.full(len(bodies), outside)]], axis=1)
+        _, flips = _joined(ends, np.concatenate([votes, np.float32(seen[bodies])]), outside + 1)
+        flips ^= flips[outside]
     report(1.0)
-    return np.where(flipped ^ flips[part], -1, 1).astype(np.int8), label[part]
+    return np.where(flipped ^ flips[part], -1, 1).astype(np.int8), label[part], faces_outside
 
 
 def _without_doubt(columns: np.ndarray, directions: np.ndarray, graph: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -69,24 +87,38 @@ def _without_doubt(columns: np.ndarray, directions: np.ndarray, graph: np.ndarra
     line, at = np.nonzero(is_good & (part[others] != part))
     ends = np.stack([part[at], part[others[line, at]]])
     turned = (agreement[line, at] < 0) ^ flipped[at] ^ flipped[others[line, at]]
-    label, flips = _joined(ends, turned, int(part.max(initial=-1)) + 1)
+    label, flips = _joined(ends, np.where(turned, np.float32(-1), 1), int(part.max(initial=-1)) + 1)
     return label[part], flipped ^ flips[part]
 
 
-def _joined(ends: np.ndarray, turned: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+def _joined(ends: np.ndarray, votes: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
     """(count,) the number of the part that each node belongs to, and whether it must flip to agree with others in it.
 
-    ends: (2, E) different nodes, best edge first. turned: (E,) whether their normals disagree.
+    ends: (2, E) different nodes. votes: (E,) float32, above 0 where their normals agree, and how surely. All edges
+    between two parts vote together, so that none of them decides alone.
     """
     label, flipped = np.arange(count), np.zeros(count, bool)
     while ends.shape[1]:
-        number, flip = _merge(ends, turned, count)
+        ends, votes = _counted(ends, votes, count)
+        number, flip = _merge(ends, votes < 0, count)
         flipped ^= flip[label]
         label = number[label]
-        turned, ends, count = turned ^ flip[ends[0]] ^ flip[ends[1]], number[ends], int(number.max()) + 1
+        votes = np.where(flip[ends[0]] ^ flip[ends[1]], -votes, votes)
+        ends, count = number[ends], int(number.max()) + 1
         between = np.flatnonzero(ends[0] != ends[1])
-        ends, turned = ends[:, between], turned[between]
+        ends, votes = ends[:, between], votes[between]
     return label, flipped
+
+
+def _counted(ends: np.ndarray, votes: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """(2, P) the different pairs among (2, E) ends, and (P,) the sum of each one's votes, clearest first."""
+    keys = np.minimum(*ends).astype(np.int64) * count + np.maximum(*ends)
+    order = np.argsort(keys, kind="stable")
+    keys, votes = keys[order], votes[order]
+    first = np.flatnonzero(np.diff(keys, prepend=-1))
+    pairs, sums = np.stack(np.divmod(keys[first], count)), np.add.reduceat(votes, first)
+    order = np.argsort(-np.abs(sums), kind="stable")
+    return pairs[:, order], sums[order]
 
 
 def facing_outward(positions: np.ndarray, normals: np.ndarray, part: np.ndarray) -> np.ndarray:
@@ -125,17 +157,6 @@ def facing_scanners(positions: np.ndarray, normals: np.ndarray, scanners: np.nda
     with np.errstate(invalid="ignore"):
         cosines = np.einsum("ij,ij->i", towards, normals) / np.maximum(np.linalg.norm(towards, axis=1), 1e-300)
         return np.where(cosines < -_STEEP, -1, 1).astype(np.int8)
-
-
-def _edges(neighbours: np.ndarray, part: np.ndarray) -> np.ndarray:
-    """(2, E) int32 pairs of neighbours in different parts; a pair found from both ends is kept once."""
-    count = len(neighbours)
-    own, column = np.nonzero(part[neighbours] != part[:, None])
-    other = neighbours[own, column].astype(np.int64)
-    keys = np.minimum(own, other) * count + np.maximum(own, other)
-    keys.sort()
-    keys = keys[np.diff(keys, prepend=-1) > 0]
-    return np.stack(np.divmod(keys, count)).astype(np.int32)
 
 
 def _agreement(columns: np.ndarray, directions: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:

@@ -89,6 +89,7 @@ def test_a_scan_is_stored_without_a_blend_in_the_colors_that_are_chosen(surfels_
         (("--objects", "floor", "--spacing", 1e-9), "floor: "),
         (("--ply", "nowhere.ply"), "nowhere.ply: No such file"),
         (("--file", "bare.ply"), "1 usable points are too few"),
+        (("--file", "bare.ply", "--resolution", 64), "--resolution is about objects and changes nothing of a file"),
     ],
 )
 def test_what_cannot_be_stored_leaves_nothing(arguments, sentence, animation, surfels_command, tmp_path, monkeypatch):

@@ -70,7 +70,7 @@ def test_exact_normals_of_a_tetrahedron_turn_with_its_edges():
     faces = [random.dirichlet((1, 1, 1), 500) @ np.delete(corners, k, axis=0) for k in range(4)]
     points, outward = np.concatenate(faces), np.repeat(-corners / np.sqrt(3), 500, axis=0)
     normals = outward * random.choice((-1, 1), (2000, 1))
-    signs, part = consistent_signs(points, normals, nearest_neighbours(points, 8)[0])
+    signs, part, _ = consistent_signs(points, normals, nearest_neighbours(points, 8)[0])
     assert part.max() == 0
     assert abs(((signs[:, None] * normals) * outward).sum()) == pytest.approx(2000)
 
