@@ -5,8 +5,9 @@ Six places around the model send rays on spherical grids; *noise* is the standar
 spacings; *strays* are spread evenly over the model's box. *10 degrees*: share of the points whose normal is within that
 of the mesh's. *wrong side*: share beyond 90. *strays*, *lost*: shares of the strays, and of the good points, that were
 left out; strays within three deviations of the surface do not count. *PSNR*: of the picture under a sun, against the
-mesh's own normals in float64, where the scanner saw the mesh. Points a second are those of one processor's time, and
-of the clock.
+mesh's own normals in float64, where the scanner saw the mesh. *Flattened*: with noise flattened. *The mesh*: with its
+normals at the places nearest to the noisy points, about the best that can be known of them. Points a second are those
+of one processor's time, and of the clock.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from bench.representation.meshes import load_colored
-from bench.scanned.others import of_checkout, of_open3d, ours
+from bench.scanned.others import of_checkout, of_open3d, of_the_mesh, ours
 from bench.scanned.pictures import Views
 from bench.scanned.scanner import Scan, scanned
 from measuring.models import short
@@ -53,7 +54,9 @@ def run(options, report) -> None:
 
 
 def rows(options, report, renderer):
-    ways = {"this": ours} | {str(checkout): partial(of_checkout, checkout) for checkout in options.beside}
+    ways = {"this": ours, "flattened": partial(ours, flattens_noise=True), "the mesh": of_the_mesh} | {
+        str(checkout): partial(of_checkout, checkout) for checkout in options.beside
+    }
     if options.open3d:
         ways["Open3D"] = partial(of_open3d, options.open3d)
     for file in options.model:

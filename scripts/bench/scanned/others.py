@@ -53,9 +53,16 @@ np.savez(sys.argv[2], seconds=seconds, kept=kept, normals=normals)
 """
 
 
-def ours(scan, scanners):
-    seconds, (surfels, report) = both(lambda: surfels_from_points(scan.points, scanners=scanners))
+def ours(scan, scanners, **options):
+    seconds, (surfels, report) = both(lambda: surfels_from_points(scan.points, scanners=scanners, **options))
     return surfels, report.kept, seconds
+
+
+def of_the_mesh(scan, scanners):
+    """No strays, and the normals that the mesh itself has nearest to the noisy points: about the best that any method could find."""
+    good = np.flatnonzero(~scan.is_stray)
+    seconds, (surfels, report) = both(lambda: surfels_from_points(scan.points[good], scan.nearest[good]))
+    return surfels, good[report.kept], seconds
 
 
 def of_checkout(checkout: Path, scan, scanners):

@@ -29,6 +29,7 @@ _DEVIATIONS = 3.0
 class Scan:
     """points, scanners: (N, 3) float64. normals: (N, 3) the mesh's at the hits, on the scanner's side; NaN for strays.
     is_stray: (N,) bool; is_near: (N,) strays that lie within the noise of the surface, which nobody could tell.
+    nearest: (N, 3) the mesh's normals at its places nearest to the points, on the scanner's side; NaN for strays.
     seen: tree of the hits without noise. spacing: the edge of a square with the mean area per point.
     """
 
@@ -37,6 +38,7 @@ class Scan:
     normals: np.ndarray
     is_stray: np.ndarray
     is_near: np.ndarray
+    nearest: np.ndarray
     seen: cKDTree
     spacing: float
 
@@ -54,14 +56,14 @@ def scanned(mesh: TriangleMesh, count: int, noise: float, strays: float) -> Scan
     found = [_hits(tree, place, middle, reach, rays) for place in places]
     hits, faces = (np.concatenate(parts) for parts in zip(*found, strict=True))
     scanners = np.repeat(places, [len(faces) for _, faces in found], axis=0)
-    normals = _normals(mesh, hits, faces)
-    normals *= np.where(np.einsum("ij,ij->i", normals, scanners - hits) < 0, -1, 1)[:, None]
+    normals = _towards(_normals(mesh, hits, faces), scanners - hits)
     corners = mesh.positions[mesh.triangles]
     area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum() / 2
     spacing = float(np.sqrt(area / len(hits)))
     stray = random.uniform(low - 0.1 * (high - low), high + 0.1 * (high - low), (int(strays * len(hits)), 3))
     near = np.array([tree.find_nearest(place)[3] for place in stray.tolist()]) < _DEVIATIONS * noise * spacing
-    points = np.concatenate([hits + noise * spacing * random.normal(size=hits.shape), stray])
+    noisy = hits + noise * spacing * random.normal(size=hits.shape)
+    points = np.concatenate([noisy, stray])
     order, is_stray = random.permutation(len(points)), np.arange(len(points)) >= len(hits)
     return Scan(
         points[order],
@@ -69,9 +71,21 @@ def scanned(mesh: TriangleMesh, count: int, noise: float, strays: float) -> Scan
         np.concatenate([normals, np.full(stray.shape, np.nan)])[order],
         is_stray[order],
         np.concatenate([np.zeros(len(hits), bool), near.reshape(-1)])[order],
+        np.concatenate([_nearest_normals(mesh, tree, noisy, scanners), np.full(stray.shape, np.nan)])[order],
         cKDTree(hits),
         spacing,
     )
+
+
+def _nearest_normals(mesh: TriangleMesh, tree, points, scanners) -> np.ndarray:
+    found = [tree.find_nearest(point) for point in points.tolist()]
+    places, faces = np.array([place[:] for place, *_ in found]), np.array([face for _, _, face, _ in found])
+    return _towards(_normals(mesh, places, faces), scanners - points)
+
+
+def _towards(normals: np.ndarray, directions: np.ndarray) -> np.ndarray:
+    """(n, 3) normals, turned to where (n, 3) directions point."""
+    return normals * np.where(np.einsum("ij,ij->i", normals, directions) < 0, -1, 1)[:, None]
 
 
 def _hits(tree, place, middle, reach, rays) -> tuple[np.ndarray, np.ndarray]:
