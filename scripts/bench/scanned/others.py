@@ -59,7 +59,7 @@ def ours(scan, scanners, **options):
 
 
 def of_the_mesh(scan, scanners):
-    """No strays, and the normals that the mesh itself has nearest to the noisy points: about the best that any method could find."""
+    """No strays, and the mesh's normals nearest to the noisy points: about the best that any method could find."""
     good = np.flatnonzero(~scan.is_stray)
     seconds, (surfels, report) = both(lambda: surfels_from_points(scan.points[good], scan.nearest[good]))
     return surfels, good[report.kept], seconds
