@@ -10,7 +10,7 @@ from .frame import EMPTY_DEPTH, Frame
 from .plan.build import plan
 from .plan.frame_plan import FramePlan
 from .presets import PRESETS, SCAN_LOOK, Preset
-from .renderer import RenderCancelled, Renderer, Shown
+from .renderer import Renderer, Shown
 from .scene import (
     Finish,
     GlossTexture,
@@ -34,6 +34,7 @@ from .scene.panorama import EquidistantFisheye, Equirectangular, EquisolidFishey
 from .scene.polygons import Polygons, make_polygons
 from .scene.ramp import Ramp
 from .settings import Settings
+from .tile_drawing import RenderCancelled
 from .viewport.arrival import Arrival
 from .viewport.pace import Pace
 from .viewport.refinement import Refinement

@@ -185,7 +185,7 @@ def seeing(on_device):
     def draw(device, scene, view):
         renderer, wider = Renderer(device), wider_camera(view)
         frame = renderer.render(scene, view, SETTINGS)
-        return frame, renderer.probes._kept[1]._frames[0], (wider, renderer.probes._screen[1]._seen)
+        return frame, renderer.planner.probes._kept[1]._frames[0], (wider, renderer.planner.probes._screen[1]._seen)
 
     return lambda *what: on_device(lambda device: draw(device, *what))
 

@@ -8,11 +8,12 @@ from typing import NamedTuple
 
 from ..assembly.accumulation import sample_camera
 from ..plan.graph import Pause
-from ..renderer import Renderer, Shown, Tile
+from ..renderer import Renderer, Shown
 from ..scene import Scene
 from ..scene.camera import Camera
 from ..settings import Settings
 from ..shadows.receivers import viewers
+from ..tile_drawing import Tile
 from .pace import Pace
 
 #: Seconds that a picture waits for streamed surfels; what is missing then comes later.
