@@ -5,7 +5,6 @@ sun, and to what the camera sees of it if that differs."""
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import bpy
@@ -24,6 +23,7 @@ from ..materials.node_trees import uses_nodes
 from ..materials.surface_shaders import Part, Shader
 from ..materials.texture_images import UnreadableError, fingerprint, linear_pixels, odd_pixels_sentence, settings_of
 from . import passed_over
+from .notes import Notes
 from .shading import BLACK, color_times_strength, finite_radiance
 from .world_shaders import Backgrounds, backgrounds
 
@@ -185,8 +185,7 @@ class _Evaluated:
 
     def read(self) -> tuple[Environment, tuple[str, ...]]:
         """The environment, and notes on what it lacks."""
-        notes, found, read = SimpleNamespace(said={}), 0.0, []
-        notes.add = lambda sentence: notes.said.setdefault(sentence)
+        notes, found, read = Notes(), 0.0, []
 
         def plain(shader: Shader) -> Color:
             return color_times_strength(shader, self.owner, notes)
@@ -200,7 +199,7 @@ class _Evaluated:
         suns = [sun for _, _, sampling in read for sun in sampling.suns]
         for share, graph, _ in read:
             found = found + share * radiance(graph, Sampling(rows, suns))
-        return Environment(np.clip(found, 0, MAX_RADIANCE).astype(np.float32)), tuple(notes.said)
+        return Environment(np.clip(found, 0, MAX_RADIANCE).astype(np.float32)), tuple(notes.counts)
 
 
 class _Picture(NamedTuple):

@@ -148,6 +148,17 @@ def test_a_world_of_nodes_is_that_of_cycles(make, world, picture, switch_to_cycl
     assert psnr(ours / truth.max(), truth / truth.max()) > 35
 
 
+@pytest.mark.parametrize("output", ["Location", "Color", "Random", None])
+def test_what_a_world_reads_of_an_object_is_unreadable(output, world):
+    """It has none. output: of an Object Info node, or None for an Attribute node of the object."""
+    node = add(world, "ObjectInfo") if output else add(world, "Attribute", attribute_type="OBJECT", attribute_name="it")
+    link(world, node, output or "Color")
+    notes = Notes()
+    assert WorldStore().read(world, notes)["environment"] is None
+    (sentence,) = notes.sentences()
+    assert "The world 'world' is textured; its Background node's plain colour is used" in sentence
+
+
 def test_a_sky_of_hosek_and_wilkie_is_named_and_about_as_bright(world, picture, switch_to_cycles, said):
     link(world, sky_node(world, "HOSEK_WILKIE", ground_albedo=0.3, turbidity=3.0, sun_direction=(0.3, -0.5, 0.4)))
     ours = picture()[..., :3]

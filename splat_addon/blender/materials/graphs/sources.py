@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import bpy
 import numpy as np
 
 from ....shading_nodes import ATTRIBUTE, ATTRIBUTE_ALPHA, BUMP, UV
@@ -122,8 +123,8 @@ def _attribute(tree: GraphReading, node: Node, output: str) -> Value:
 
 def _property(tree: GraphReading, node: Node, output: str) -> Value:
     """An attribute of the object: a custom property of it or its data, or a property by its path."""
-    name, found = node.attribute_name, None
-    for owner in (tree.owner, tree.owner.data):
+    name, found, shown = node.attribute_name, None, _object(tree, node)
+    for owner in (shown, shown.data):
         if found is None and owner is not None:
             found = owner[name] if name in owner.keys() else _by_path(owner, name)
     if isinstance(found, int | float):
@@ -145,9 +146,16 @@ def _by_path(owner, path: str):
     return found if isinstance(found, int | float) or hasattr(found, "__len__") else None
 
 
+def _object(tree: GraphReading, node: Node) -> bpy.types.Object:
+    """What shows the surface. Raises UnreadableError for a world, which only has a place."""
+    if not isinstance(tree.owner, bpy.types.Object):
+        raise unreadable(node, "of an object, which a world is not")
+    return tree.owner
+
+
 @reads("ObjectInfo")
 def _object_info(tree: GraphReading, node: Node, output: str) -> Value:
-    owner = tree.owner
+    owner = _object(tree, node)
     if output == "Location":
         return Value(tuple(owner.matrix_world.translation), 3)
     if output == "Color":

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from types import SimpleNamespace
 from typing import NamedTuple
 
 import numpy as np
@@ -31,8 +30,11 @@ _ROWS, _MOST_ROWS = 256, 1024
 #: Pixels across the disc of a sun.
 _PIXELS_ACROSS = 3
 
-#: A world has no place of its own.
-_NOWHERE = SimpleNamespace(matrix_world=np.eye(4), data=None)
+
+class _Nowhere:
+    """Where a world is: its own space is that of the scene. Nothing else of an object is asked for."""
+
+    matrix_world = np.eye(4)
 
 
 class _Sun(NamedTuple):
@@ -54,7 +56,7 @@ class _Directions:
     """Stands for the layers of a mesh, whose places are directions and whose surface faces the viewer."""
 
     mesh = material = None
-    owner, asks_owner = _NOWHERE, False
+    owner, asks_owner = _Nowhere, False
 
     def __init__(self):
         self.kept_images: dict = {}
