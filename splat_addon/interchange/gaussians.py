@@ -55,6 +55,8 @@ class Gaussians:
             "with unusable numbers": self.unusable,
         }
         said = [f"Skipped {count:,} of {self.total:,} Gaussians {why}" for why, count in skipped.items() if count]
+        if 2 * self.not_flat > self.total:
+            said[0] += "; a Flatness of 1 keeps them all, as discs"
         if self.view_dependent:
             said.append(VIEW_DEPENDENT)
         return [*said, *self.said]

@@ -58,7 +58,7 @@ def consistent_signs(
         more, both = sides
         of_parts = (np.bincount(label[part], amount) for amount in (np.abs(more), both))
         faces_outside = np.greater(next(of_parts), _BODY * next(of_parts))[label[part]]
-        # the outside is one more part, with which each part of a body agrees as far as it is seen from there
+        # the outside is one more part: what is seen of a body from there votes for its parts
         clear = more * np.abs(more) / np.maximum(both * both, np.float32(1e-12))
         seen = np.bincount(part, np.where(faces_outside, np.where(flipped, -clear, clear), 0), outside)
         bodies = np.flatnonzero(seen)

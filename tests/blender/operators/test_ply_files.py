@@ -126,14 +126,14 @@ def test_an_invisible_scan_is_a_warning(import_ply, tmp_path, capfd):
 def test_thick_gaussians_are_counted_and_left_out(import_ply, surfels_of, tmp_path, capfd):
     names = ["x", "y", "z", "f_dc_0", "f_dc_1", "f_dc_2", "opacity", "scale_0", "scale_1", "scale_2", "f_rest_0",
              "rot_0", "rot_1", "rot_2", "rot_3"]  # fmt: skip
-    head = ["ply", "format ascii 1.0", "element vertex 2", *(f"property float {n}" for n in names), "end_header"]
-    rows = [f"{x} 0 0 0 0 0 9 0 0 {thickness} 0 1 0 0 0" for x, thickness in ((1, -5), (2, 0))]
+    head = ["ply", "format ascii 1.0", "element vertex 3", *(f"property float {n}" for n in names), "end_header"]
+    rows = [f"{x} 0 0 0 0 0 9 0 0 {thickness} 0 1 0 0 0" for x, thickness in ((1, -5), (2, 0), (3, 0))]
     (tmp_path / "g.ply").write_text("\n".join([*head, *rows, ""]))
     assert len(surfels_of(import_ply(tmp_path / "g.ply"))) == 1
     report = capfd.readouterr().out
-    assert "Skipped 1 of 2 Gaussians thicker than the flatness allows" in report
+    assert "Skipped 2 of 3 Gaussians thicker than the flatness allows; a Flatness of 1 keeps them all" in report
     assert "changes with the view" in report
-    assert len(surfels_of(import_ply(tmp_path / "g.ply", flatness=1.0))) == 2
+    assert len(surfels_of(import_ply(tmp_path / "g.ply", flatness=1.0))) == 3
 
 
 @pytest.mark.parametrize(
