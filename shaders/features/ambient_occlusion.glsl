@@ -15,6 +15,10 @@ void ambient_occlusion_diffuse(inout vec3 light) {
   light *= open_diffuse;
 }
 
+void ambient_occlusion_behind(inout vec3 light) {
+  light *= open_diffuse;
+}
+
 void ambient_occlusion_reflected(inout vec3 light, vec3 direction, float roughness) {
   float power = exp2(-16.0 * roughness - 1.0);
   light *= clamp(pow(open_cosine + open_share, power) - 1.0 + open_share, 0.0, 1.0);

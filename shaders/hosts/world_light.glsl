@@ -1,5 +1,5 @@
 // References: lib/world_light.
-// Summary: the world's light on a surface. Hooks: `diffuse` and `reflected` change the incoming light,
+// Summary: the world's light on a surface. Hooks: `diffuse`, `behind` and `reflected` change the incoming light,
 //          `through` changes the light that arrives at another place.
 
 #include "lib/world_light/{world_light}.glsl"
@@ -8,6 +8,12 @@
 vec3 world_irradiance(vec3 normal) {  // over pi
   vec3 light = sent_irradiance(normal);
   #hook diffuse(light)
+  return light;
+}
+
+vec3 world_behind(vec3 normal) {  // on the other side, over pi
+  vec3 light = sent_irradiance(-normal);
+  #hook behind(light)
   return light;
 }
 

@@ -162,7 +162,7 @@ void translucency_dim(inout Lobe lobe, vec3 base, float metallic) {
 }
 
 void translucency_mirror(inout vec3 radiance) {
-  radiance += sent_on * world_irradiance(-lit_normal);
+  radiance += sent_on * world_behind(lit_normal);
 }
 
 #part translucency, covered

@@ -154,9 +154,15 @@ def bounced(surfaces: Surfaces, seen: Seen, direct: np.ndarray, bounces: int) ->
     """
     albedo, emission = (surfaces.mean(getattr(surfaces.points, name)) for name in ("albedo", "emission"))
     smooth = smoother(surfaces, seen)
+    translucency, opposite = surfaces.mean(surfaces.points.translucency), surfaces.opposite
+
+    def sent(light: np.ndarray) -> np.ndarray:
+        behind = np.concatenate([light, np.zeros((1, 3))])[opposite]
+        return emission + albedo * (light + translucency * (behind - light))
+
     light = smooth(seen.gathered(emission))
     for _ in range(bounces):
-        light = smooth(seen.gathered(emission + albedo * (direct + light)))
+        light = smooth(seen.gathered(sent(direct + light)))
     return light
 
 

@@ -38,12 +38,14 @@ _OPAQUE = 0.5
 @dataclass(frozen=True, eq=False)
 class Points:
     """n places on surfaces. positions: (n, 3) float64 world. normals: (n, 3) float32, unit. albedo, emission: (n, 3)
-    float32. light_sets: (n,) uint8. have_backs: (n,) bool, whether the other side is a surface too."""
+    float32. translucency: (n, 1) float32 share of diffuse light that leaves on the other side. light_sets: (n,) uint8.
+    have_backs: (n,) bool, whether the other side is a surface too."""
 
     positions: np.ndarray
     normals: np.ndarray
     albedo: np.ndarray
     emission: np.ndarray
+    translucency: np.ndarray
     light_sets: np.ndarray
     have_backs: np.ndarray
 
@@ -119,14 +121,14 @@ def _placed_points(
         np.einsum("njk,kn->nj", of_instances[instances], columns)
         for of_instances, columns in ((linear, own.positions), (turned, own.normals))
     )
-    albedo, emission = _surfaces(placed, own)
+    albedo, emission, translucency = _surfaces(placed, own)
     if emission.any():
         emission *= np.where(solid, _shown(places, linear, chooser.edge), 1)[instances, None].astype(np.float32)
     have_backs = ~solid[instances]
     if getattr(placed.shape, "hidden_back", None) is not None:
         have_backs &= placed.shape.hidden_back[own.rows[:, 0]] < 0.5
     sets, normals = light_sets[instances].astype(np.uint8), unit(normals).astype(np.float32)
-    return Points(positions + shift[instances], normals, albedo, emission, sets, have_backs)
+    return Points(positions + shift[instances], normals, albedo, emission, translucency, sets, have_backs)
 
 
 def _shown(places: _Places, linear: np.ndarray, edge: float) -> np.ndarray:
@@ -278,8 +280,8 @@ def are_opaque(placed: Placed, places: _Places) -> np.ndarray:
     return opaque
 
 
-def _surfaces(placed: Placed, places: _Places) -> tuple[np.ndarray, np.ndarray]:
-    """(n, 3) albedo and emission of points."""
+def _surfaces(placed: Placed, places: _Places) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(n, 3) albedo and emission of points, and (n, 1) translucency."""
     shape = placed.shape
     materials = np.minimum(shape.materials[places.rows[:, 0]], len(placed.materials) - 1)
     albedo = _mean(shape.colors, places)[:, :3].copy()
@@ -291,4 +293,5 @@ def _surfaces(placed: Placed, places: _Places) -> tuple[np.ndarray, np.ndarray]:
         emission = np.array([material.emission for material in placed.materials], np.float32)[materials]
     if placed.is_holdout:
         albedo, emission = np.zeros_like(albedo), np.zeros_like(emission)
-    return np.clip(albedo, 0, 1), np.maximum(emission, 0)
+    translucency = np.array([[material.finish.translucency] for material in placed.materials], np.float32)[materials]
+    return np.clip(albedo, 0, 1), np.maximum(emission, 0), translucency

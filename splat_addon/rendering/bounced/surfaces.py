@@ -81,6 +81,11 @@ class Surfaces:
         seen = some[self.voxels.first_full(begins[some], toward[some], lengths[some]) < 0]
         return first[seen], second[seen]
 
+    @property
+    def opposite(self) -> np.ndarray:
+        """(m,) merged surfels of the opposite sides in the same cells, -1 for none."""
+        return self.numbers[self._flat_cells(self.cells), self.sides ^ 1]
+
     def _beside(self) -> tuple[np.ndarray, np.ndarray]:
         """Pairs of merged surfels of one side in cells beside each other: (p,) of each."""
         shape = np.array(cells_of(self.voxels.blocks.shape, self.cell))

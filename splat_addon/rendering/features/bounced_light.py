@@ -7,6 +7,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..bounced.table import PER_CELL, PER_ROW
+from ..passes.sums import finishes
 from ..plan.graph import Part
 from ..plan.hosts import LIT_HOSTS
 
@@ -55,4 +56,5 @@ def is_present(planning) -> bool:
 
 def parts(planning, p):
     if p.host in LIT_HOSTS:
-        yield Part("bounced_light", inputs=("cells",))
+        lets_through = planning.model.has_finish and any(one.translucency for one in planning.find(finishes))
+        yield Part("bounced_light", ("through",) if lets_through else (), inputs=("cells",))

@@ -9,7 +9,7 @@ import pytest
 
 from splat_addon.reference import scenes
 from splat_addon.reference.bounced_light import bounced_at
-from splat_addon.rendering import Light, Material, PolygonInstance, Scene, make_polygons
+from splat_addon.rendering import Finish, Light, Material, PolygonInstance, Scene, make_polygons
 from splat_addon.rendering.bounced.gathering import bounced, lit_by_lamps, seen_from
 from splat_addon.rendering.bounced.light import bounced_light, sky_of, surfaces_of
 from splat_addon.rendering.bounced.solids import are_solid
@@ -178,3 +178,17 @@ def test_small_lamp_of_emission_sends_as_much_as_it_shows():
     light, places, normals, _, _ = gathered(Scene(polygons=[disc(1.0, 0.0, True), lamp]), 0, FINE)
     below = (np.linalg.norm(places[:, :2], axis=1) < 0.2) & (places[:, 2] < 0.2) & (normals[:, 2] > 0)
     assert light[below].mean() == pytest.approx((radius / apart) ** 2, rel=0.15)
+
+
+@pytest.mark.parametrize("translucency", (0.0, 0.6))
+def test_paper_sends_on_what_arrives_on_its_other_side(translucency):
+    """A lamp glows on one side of a sheet; what the other side sends is what a disc behind it receives."""
+    material = Material(finish=Finish(translucency=translucency))
+    sheet = disc(1.0, 0.5, True, material)
+    sheet = replace(sheet, shape=replace(sheet.shape, colors=np.ones_like(sheet.shape.colors)))
+    glowing = disc(1.0, 1.0, False, Material(emission=(1.0,) * 3))
+    light, places, normals, _, _ = gathered(Scene(polygons=[sheet, glowing, disc(0.5, 0.0, True)]), 1, FINE)
+    near = np.linalg.norm(places[:, :2], axis=1) < 0.3
+    over = light[near & (np.abs(places[:, 2] - 0.5) < 0.1) & (normals[:, 2] > 0)].mean()
+    below = light[near & (places[:, 2] < 0.1) & (normals[:, 2] > 0)].mean()
+    assert below == pytest.approx(0.8 * translucency * over, rel=0.2, abs=0.02)
