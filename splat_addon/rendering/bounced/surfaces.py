@@ -22,6 +22,8 @@ _CELLS = (3, 4, 6, 8, 12, 16, 24, 32)
 
 #: How many of a merged surfel's points may be its middle one.
 _CANDIDATES = 6
+#: How much farther above surfaces, in cubes, it is looked whether anything is between: also above a rug.
+_LIFTS = 0.0, 1.5
 #: What a ray that leaves the scene counts for beside one that does not.
 _OUTDOORS = 0.1
 
@@ -75,10 +77,13 @@ class Surfaces:
     def neighbours(self) -> tuple[np.ndarray, np.ndarray]:
         """Pairs of merged surfels of one side in cells beside each other, with nothing between: (p,) of each."""
         first, second = self._beside()
-        begins, toward, lengths = _between(self.starts[self.middles[first]], self.starts[self.middles[second]])
-        is_usable = self.are_free[self.middles[first]] & self.are_free[self.middles[second]]
-        some = np.flatnonzero(is_usable)
-        seen = some[self.voxels.first_full(begins[some], toward[some], lengths[some]) < 0]
+        ends = self.middles[first], self.middles[second]
+        some = np.flatnonzero(self.are_free[ends[0]] & self.are_free[ends[1]])
+        first, second, ends = first[some], second[some], (ends[0][some], ends[1][some])
+        seen = np.zeros(len(some), bool)
+        for lift in _LIFTS:
+            places = (self.starts[row] + lift * self.voxels.edge * self.points.normals[row] for row in ends)
+            seen |= self.voxels.first_full(*_between(*places)) < 0
         return first[seen], second[seen]
 
     @property
@@ -187,11 +192,11 @@ def _together(surfaces: Surfaces) -> tuple[np.ndarray, np.ndarray]:
 
 def _indoors(surfaces: Surfaces, rows: np.ndarray) -> np.ndarray:
     """(n,) how far points are in a room, above 0: the share of their rays that end at a side of what is there, and a
-    little of those that leave the scene; the others are within things."""
+    little of those that leave the scene, less that of rays that are within things."""
     around = np.concatenate([np.eye(3), -np.eye(3)]) * 0.8
     directions = unit(surfaces.points.normals[rows, None] + around).reshape(-1, 3)
     cubes = surfaces.voxels.first_full(np.repeat(surfaces.starts[rows], len(around), axis=0), directions)
     is_met = cubes >= 0
     value = np.where(is_met, 0.0, _OUTDOORS)
-    value[is_met] = surfaces.hit(cubes[is_met], directions[is_met]) >= 0
-    return _OUTDOORS**2 + value.reshape(len(rows), -1).mean(axis=1)
+    value[is_met] = np.where(surfaces.hit(cubes[is_met], directions[is_met]) >= 0, 1.0, -1.0)
+    return np.maximum(value.reshape(len(rows), -1).mean(axis=1), _OUTDOORS**2)
