@@ -25,6 +25,8 @@ RAYS, _FEWEST, _MOST = 1_500_000, 32, 256
 _TO_LAMPS, _ALL_TO_LAMPS = 16, 1_000_000
 #: How far from a lamp, in cubes, nothing hides it: what it is mounted on.
 _LAMP_ROOM = 2.5
+#: A merged surfel is within something if fewer of its rays count.
+_WITHIN = 0.5
 #: Merged surfels whose rays are followed together.
 _AT_ONCE = 256
 #: Steps of two numbers that fill a square evenly (Roberts 2018), and of three that keep neighbours apart.
@@ -81,11 +83,13 @@ def _seen_from(surfaces: Surfaces, sky, count: int, some: slice) -> tuple[np.nda
     escaped = rows[~is_met]
     world[escaped] = sky(directions[escaped])
     shape = len(own) // count, count
-    counts = (numbers > -2).reshape(shape).sum(axis=1)
+    counts, tried = ((rays > 0).reshape(shape).sum(axis=1) for rays in (numbers + 2, counts_too))
+    within = counts < _WITHIN * tried
+    numbers.reshape(shape)[within], counts[within] = -2, 0
     per = 1 / np.maximum(counts, 1)
     is_open = (numbers == -1).reshape(shape).sum(axis=1) * per
     mean_inverse = inverse.reshape(shape).sum(axis=1) * per
-    world = world.reshape(*shape, 3).sum(axis=1) * per[:, None]
+    world = np.where(within[:, None], 0, world.reshape(*shape, 3).sum(axis=1)) * per[:, None]
     return numbers.reshape(shape), world, is_open, counts, 1 / np.maximum(mean_inverse, 1e-6)
 
 

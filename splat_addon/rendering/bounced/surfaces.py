@@ -22,8 +22,9 @@ _CELLS = (3, 4, 6, 8, 12, 16, 24, 32)
 
 #: How many of a merged surfel's points may be its middle one.
 _CANDIDATES = 6
-#: How much farther above surfaces, in cubes, it is looked whether anything is between: also above a rug.
-_LIFTS = 0.0, 1.5
+#: Between which of two merged surfels' points, by their share of all, and how much farther above surfaces, in cubes, it
+#: is looked whether anything is there: a wall is, and a pole or a rug is not.
+_SHARES, _LIFTS = (0.5, 0.1, 0.3, 0.7, 0.9), (0.0, 1.5)
 #: What a ray that leaves the scene counts for beside one that does not.
 _OUTDOORS = 0.1
 
@@ -32,8 +33,8 @@ _OUTDOORS = 0.1
 class Surfaces:
     """voxels: what is full. cell: cubes along the side of a cell. points: ordered by merged surfel; those of one begin
     at `first` (m + 1,). cells: (m, 3) of each merged surfel, and `sides` (m,). starts: (n, 3) where the points' rays
-    begin, relative to `voxels.low`. are_free: (n,) bool, whether that is outside of everything and sees the merged
-    surfel's middle one, `middles` (m,): of what is on both sides of a wall, only one part counts. numbers: (cells, 6)
+    begin, relative to `voxels.low`. are_free: (n,) bool, whether that is outside of everything and sees others of the
+    merged surfel: of what is on both sides of a wall, only one part counts. numbers: (cells, 6)
     int32 merged surfels of the cells in flat order, -1 for none. present: (cubes,) uint8, a bit for each side that a
     cube has, so that what is met beside an edge is not taken for what is behind it.
     """
@@ -46,7 +47,6 @@ class Surfaces:
     sides: np.ndarray
     starts: np.ndarray
     are_free: np.ndarray
-    middles: np.ndarray
     numbers: np.ndarray
     present: np.ndarray
 
@@ -77,13 +77,18 @@ class Surfaces:
     def neighbours(self) -> tuple[np.ndarray, np.ndarray]:
         """Pairs of merged surfels of one side in cells beside each other, with nothing between: (p,) of each."""
         first, second = self._beside()
-        ends = self.middles[first], self.middles[second]
-        some = np.flatnonzero(self.are_free[ends[0]] & self.are_free[ends[1]])
-        first, second, ends = first[some], second[some], (ends[0][some], ends[1][some])
-        seen = np.zeros(len(some), bool)
-        for lift in _LIFTS:
-            places = (self.starts[row] + lift * self.voxels.edge * self.points.normals[row] for row in ends)
-            seen |= self.voxels.first_full(*_between(*places)) < 0
+        free = np.flatnonzero(self.are_free)
+        begins = np.searchsorted(free, self.first)
+        counts = np.diff(begins)
+        some = np.flatnonzero((counts[first] > 0) & (counts[second] > 0))
+        first, second, seen = first[some], second[some], np.zeros(len(some), bool)
+        for share in _SHARES:
+            rows = begins[:-1] + (counts * share).astype(int)
+            for lift in _LIFTS:
+                left = np.flatnonzero(~seen)
+                ends = free[rows[first[left]]], free[rows[second[left]]]
+                places = (self.starts[own] + lift * self.voxels.edge * self.points.normals[own] for own in ends)
+                seen[left] = self.voxels.first_full(*_between(*places)) < 0
         return first[seen], second[seen]
 
     @property
@@ -156,9 +161,8 @@ def make_surfaces(
     first = np.append(begins, len(ordered))
     own = at[order[begins]] // cell
     numbers, sides = numbers.reshape(-1, SIDES), sides[order[begins]]
-    made = Surfaces(voxels, cell, every, first, own, sides, starts, are_free, first[:-1], numbers, present)
-    middles, are_free = _together(made)
-    return replace(made, middles=middles, are_free=are_free)
+    made = Surfaces(voxels, cell, every, first, own, sides, starts, are_free, numbers, present)
+    return replace(made, are_free=_together(made))
 
 
 def _between(starts: np.ndarray, ends: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -168,14 +172,13 @@ def _between(starts: np.ndarray, ends: np.ndarray) -> tuple[np.ndarray, np.ndarr
     return starts, way / np.maximum(lengths, 1e-30)[:, None], lengths
 
 
-def _together(surfaces: Surfaces) -> tuple[np.ndarray, np.ndarray]:
-    """(m,) a free one of the starts of each merged surfel, and (n,) bool, which others it sees. Of those with none that
-    is free, the first. Of parts inside and outside of a room, the one inside is taken: light that leaks into the dark
-    is seen sooner than shade below eaves."""
+def _together(surfaces: Surfaces) -> np.ndarray:
+    """(n,) bool, which free starts of a merged surfel see one of them. Of parts inside and outside of a room, the one
+    inside is taken: light that leaks into the dark is seen sooner than shade below eaves."""
     starts, first = surfaces.starts, surfaces.first
     free, sizes = np.flatnonzero(surfaces.are_free), np.diff(first)
     if not len(free):
-        return first[:-1], surfaces.are_free
+        return surfaces.are_free
     own = np.repeat(np.arange(len(sizes)), sizes)[free]
     begins, counts = np.searchsorted(own, np.arange(len(sizes))), np.bincount(own, minlength=len(sizes))
     best, chosen, seen = np.zeros(len(sizes)), first[:-1].copy(), np.zeros(len(starts), bool)
@@ -187,7 +190,7 @@ def _together(surfaces: Surfaces) -> tuple[np.ndarray, np.ndarray]:
         is_better = value > best
         best[is_better], chosen[is_better] = value[is_better], free[row][is_better[have_any]]
     seen[free] = surfaces.voxels.first_full(*_between(starts[chosen[own]], starts[free])) < 0
-    return chosen, seen
+    return seen
 
 
 def _indoors(surfaces: Surfaces, rows: np.ndarray) -> np.ndarray:
