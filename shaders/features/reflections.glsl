@@ -227,18 +227,21 @@ int reflecting_number;  // of the pixel's samples
 
 // Beside the picture's edge, in shares of it, what it shows gives way to what probes show.
 const float SCREEN_FADES = 0.08;
+// From this width on, radians, up to twice it, a lobe's mean is the probe's, which is blurred over all that is around.
+const float SCREEN_WIDEST = 0.15;
 
 // What the camera sees of what a ray meets, and its opacity; share: 0 where it meets nothing there.
 vec4 screen_met(vec3 along, float width, out float share) {
   vec3 found, first = in_picture(reflecting_from);
   bool is_open;
   share = 0.0;
+  if (width >= 2.0 * SCREEN_WIDEST) return vec4(0.0);
   if (any(lessThan(first.xy, vec2(0.0))) || any(greaterThan(first.xy, frame.screen_size))) return vec4(0.0);
   if (!met_in_picture(picture_way(reflecting_from, along, FAR), found, is_open)) return vec4(0.0);
   float depth = view.is_parallel > 0.5 ? 1.0 : found.z;
   vec3 place = vec3((found.xy / frame.screen_window.zw + frame.screen_window.xy) * depth, -found.z);
   vec2 beside = min(found.xy, frame.screen_size - found.xy) / frame.screen_size;
-  share = clamp(min(beside.x, beside.y) / SCREEN_FADES, 0.0, 1.0);
+  share = clamp(min(beside.x, beside.y) / SCREEN_FADES, 0.0, 1.0) * clamp(2.0 - width / SCREEN_WIDEST, 0.0, 1.0);
   return picture_mapped_at(found.xy, width * distance(place, reflecting_from) / depth * frame.screen_window.w);
 }
 
