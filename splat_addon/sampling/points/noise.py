@@ -33,6 +33,9 @@ _THICK = 0.055
 #: Radians by which normals differ that are averaged with a weight of 0.6.
 _ALIKE = 0.2
 
+#: Cosine below which normals are those of another side.
+_OPPOSED = -0.8
+
 #: Rounds in which untrusted normals take the mean of those around them that are alike, and then of all around them.
 _ROUNDS_OF_ALIKE, _ROUNDS = 8, 2
 
@@ -120,7 +123,8 @@ def of_surroundings(normals: np.ndarray, neighbours: np.ndarray, rows: np.ndarra
     for _ in range(_ROUNDS_OF_ALIKE):
         _average(made, neighbours[:, :_AROUND], rows, are_on_sides=True)
     for _ in range(_ROUNDS):
-        means = made[neighbours[rows]].sum(axis=1) + made[rows]
-        length = np.linalg.norm(means, axis=1, keepdims=True)
-        made[rows] = np.where(length > 0.1, means / np.maximum(length, 1e-300), made[rows])
+        near = made[neighbours[rows]]
+        # those on the other side of a thin sheet face the other way
+        faces_alike = np.einsum("nkc,nc->nk", near, made[rows]) > _OPPOSED
+        made[rows] = unit(np.einsum("nkc,nk->nc", near, faces_alike.astype(np.float64)) + made[rows])
     return made[rows]
