@@ -40,7 +40,7 @@ def run(options, report) -> None:
     moments = ((0.5,), moment_places(8, 4), moment_places(8, 8))
     report.picture("motion_blur", [turning(renderer, *shot, places, 8) for places in moments])
     balls, _ = scenes.transparent_spheres(count=4000, opacity=1.0)
-    balls = replace(balls, lights=tuple(replace(light, casts_shadow=True) for light in balls.lights))
+    balls = replace(balls, lights=tuple(replace(light, casts_shadow=not options.quick) for light in balls.lights))
     cameras = panoramas(4 * options.size)
     report.picture("panoramas", [renderer.render(balls, camera, chosen("mip", 8, True)).color for camera in cameras])
 
