@@ -10,6 +10,8 @@ const float CLEAR_IOR = 1.001;
 // Cycles finds lamps through glass by chance, and therefore takes it for rough where a matt surface is lit (its Filter
 // Glossy): GGX alpha of light at 45 degrees. Of light that it spreads so it loses a share at each crossing.
 const float LAMP_ALPHA = 0.44, LAMP_LOSS = 0.06;
+// It keeps no more than this, times 1 and the cosine: as wide panes in Cycles at 30 and 45 degrees from their plane.
+const vec2 LAMP_GRAZING = vec2(0.46, 0.72);
 // Rays that are followed towards a lamp, to either side of it by the tangents of a lobe of this width (GGX).
 const int LAMP_TAPS = 6, LAMP_CROSSINGS = 8;
 const float LAMP_SPREAD = 0.35;
@@ -22,7 +24,7 @@ float glass_around;  // by which the rays are turned, radians
 float lamp_kept(float cosine, float roughness) {
   float own = min(roughness * roughness / LAMP_ALPHA, 1.0), cosine2 = max(cosine * cosine, 1e-4);
   float masking = 2.0 / (1.0 + sqrt(1.0 + LAMP_ALPHA * LAMP_ALPHA * (1.0 - cosine2) / cosine2));
-  return mix(masking * (1.0 - LAMP_LOSS), 1.0, own * own);
+  return mix(masking * (1.0 - LAMP_LOSS), 1.0, own * own) * min(LAMP_GRAZING.x + LAMP_GRAZING.y * cosine, 1.0);
 }
 
 // What glass leaves of a light: of the ray straight to it, if nothing bends that, and of those that are bent towards it.

@@ -19,7 +19,7 @@ CROSSINGS = 10
 #: Rays towards a lamp, the surfaces that each meets at most, the width of their lobe, and the most that each counts.
 LAMP_TAPS, LAMP_CROSSINGS, LAMP_SPREAD, LAMP_MOST = 6, 8, 0.35, 8.0
 #: GGX alpha of all glass that lamps shine through, and what a crossing loses if that is not its own roughness.
-LAMP_ALPHA, LAMP_LOSS = 0.44, 0.06
+LAMP_ALPHA, LAMP_LOSS, LAMP_GRAZING = 0.44, 0.06, (0.46, 0.72)
 _GOLDEN_TURN = np.pi * (3 - 5**0.5)
 _CLEAR_IOR = 1.001
 #: Pairs of a ray and a primitive that are looked at together.
@@ -195,6 +195,7 @@ def _to_lamp(surfaces: GlassSurfaces, places, directions, lamp, is_far: bool, be
         own, cosine2 = np.minimum(rough**2 / LAMP_ALPHA, 1) ** 2, np.maximum(cosine**2, 1e-4)
         masking = 2 / (1 + np.sqrt(1 + LAMP_ALPHA**2 * (1 - cosine2) / cosine2))
         kept = np.where(turns, (1 - lost) * (masking * (1 - LAMP_LOSS) * (1 - own) + own), 1.0)
+        kept *= np.where(turns, np.minimum(LAMP_GRAZING[0] + LAMP_GRAZING[1] * cosine, 1), 1)
         tints = np.where((casts & (turns | is_clear) & crosses)[:, None], surfaces.tints[of], 1.0)
         share[rows] *= np.where(crosses, kept, 1.0)[:, None] * tints
         width2 = (LAMP_ALPHA * (one - 1)) ** 2 / np.where(leaves, 1.0, ratio**2)
