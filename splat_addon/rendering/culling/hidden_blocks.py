@@ -7,14 +7,16 @@ import numpy as np
 
 from ...hierarchy import are_facing
 from ...hierarchy.cuts import Boxes
+from ..methods import get_method
 from ..view import DrawItem
 from .cover import Cover
 
 #: A filter may show a block's splats up to this many pixels beside the block's box.
 _BESIDE = 3
 
-#: Filtered splats may seem nearer than the box by this many times half its longest edge, which is a few of their radii.
-_NEARER = 4
+#: No splat in a box is larger than this many times half the longest edge of the box: half an edge of a box around an
+#: ellipse has at least 1 / sqrt(3) of its radius.
+_RADII = 2
 
 
 class BlocksFrontToBack:
@@ -51,7 +53,8 @@ class BlocksFrontToBack:
         """Leave out what is behind what was drawn."""
         left = np.flatnonzero(~self._are_hidden)
         middle, half = self._middle[:, left], self._half[:, left]
-        self._are_hidden[left] = cover.hides(middle, half, _NEARER * half.max(axis=0), _BESIDE)
+        nearer = get_method(self._tile.plan.method).seems_nearer * _RADII * half.max(axis=0)
+        self._are_hidden[left] = cover.hides(middle, half, nearer, _BESIDE)
         self.are_waiting &= ~self._are_hidden
 
     def show_all(self) -> None:

@@ -34,8 +34,8 @@ LEAST_PER_SAMPLE = 3
 #: The shares of the splats after which it looks, as long as it finds any.
 _SHARES = (1 / 8, 1 / 4, 1 / 2)
 
-#: Pixels beside an object's box in which a method's filter may show it, and radii by which it may seem nearer there.
-_BESIDE, _NEARER = 8, 2
+#: Pixels beside an object's box in which a method's filter may show it.
+_BESIDE = 8
 
 
 def of_cells(width: int, height: int) -> tuple[int, int]:
@@ -169,7 +169,8 @@ def _are_hidden(waiting: Items, cover: Cover, tile) -> np.ndarray:
     off = tile.settings.detail_tolerance / tile.camera.pixels_per_unit()
     off = off * (1.0 if tile.camera.is_orthographic else np.maximum(-high[2], 0.0))
     are_merged = waiting.table.of_kinds(lambda placed: tile.levels(placed) is not None)
-    nearer = _NEARER * np.maximum(waiting.table.radii, tile.merged_radii(waiting)) + off * are_merged
+    radii = np.maximum(waiting.table.radii, tile.merged_radii(waiting))
+    nearer = get_method(tile.plan.method).seems_nearer * radii + off * are_merged
     return cover.hides((low + high) / 2, (high - low) / 2, nearer, _BESIDE)
 
 

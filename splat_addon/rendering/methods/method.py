@@ -29,6 +29,8 @@ class Method:
         method corrects or clamps.
     widens: quads extend in space past the exact ellipses that the visibility pass draws; for splats seen edge-on, by
         any number of pixels.
+    seems_nearer: radii by which what the pixel filter shows beside a splat that is seen edge-on may seem nearer than
+        the splat is.
     varyings: (how it is interpolated, type, name) of what it sets up once a splat for its fragments.
     pixel_variance: variance of the pixel filter, samples squared; a box has 1/12. None: the settings choose it.
         Textures are looked up under it.
@@ -46,6 +48,7 @@ class Method:
     hides_within: str = ""
     writes_depth: bool = False
     widens: bool = False
+    seems_nearer: float = 2.0
     varyings: tuple[tuple[str, str, str], ...] = ()
     pixel_variance: float | None = None
     printed_variance: float | None = None
