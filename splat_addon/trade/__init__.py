@@ -9,10 +9,11 @@ from .choices import Choice, choices_for, series_of
 from .exact import ExactPictures
 from .measuring import Row, measure
 from .page import page
-from .survey import Survey
+from .survey import TIMED_TURNS, Survey
 from .target import Pace, Promise, Target, chosen
 
 __all__ = (
+    "TIMED_TURNS",
     "Choice",
     "ExactPictures",
     "Pace",

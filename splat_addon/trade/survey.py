@@ -16,6 +16,9 @@ from .target import Promise, Target, chosen, settled
 #: Pictures that the exact one is made from: enough for a FLIP of a few thousandths.
 _PICTURES = 8
 
+#: Frames of a choice whose median time is promised: single ones differ by more than a third.
+TIMED_TURNS = 3
+
 #: The choice that other settings than samples are changed of: where a picture is cheap, and they act alone.
 _BESIDE = "Balanced, 1 sample"
 

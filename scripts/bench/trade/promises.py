@@ -22,7 +22,7 @@ from measuring.report import Table
 from measuring.timing import in_turn, processor
 from splat_addon.reference import scenes
 from splat_addon.rendering import Light, Renderer, Settings
-from splat_addon.trade import ExactPictures, Survey, Target
+from splat_addon.trade import TIMED_TURNS, ExactPictures, Survey, Target
 from splat_addon.trade.measuring import row_of
 
 #: Multiples of the least error, and of the least time, of a scene that was measured.
@@ -30,9 +30,6 @@ ERRORS, TIMES = (1.2, 2.0, 4.0), (1.5, 3.0, 8.0)
 
 #: Scenes of the page; `--scenes` takes others.
 SCENES = "text", "torus", "sub-pixel sphere", "armadillo", "checker at 60", "transparent spheres"
-
-#: Turns that the first frame of a scene, and each promise, is measured in.
-_TURNS = 3
 
 _SUN = Light("sun", direction=(0.4, 0.3, -1.0), energy=3.0, casts_shadow=True)
 _FLAT = Settings(shading="flat", outputs=("color",))
@@ -48,7 +45,7 @@ def _measure(name: str, renderer: Renderer, options) -> list[dict]:
     return [
         {"scene": shot, **row}
         for shot, scene, camera, settings in _shots(name, View(options.size, options.models))
-        for row in _promises(renderer, scene, camera, settings, min(options.turns, _TURNS))
+        for row in _promises(renderer, scene, camera, settings, min(options.turns, TIMED_TURNS))
     ]
 
 

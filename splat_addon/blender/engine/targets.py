@@ -9,7 +9,7 @@ from time import perf_counter
 from typing import NamedTuple
 
 from ...rendering import Camera, Panorama, Renderer, Scene, Settings
-from ...trade import Pace, Promise, Survey, Target
+from ...trade import TIMED_TURNS, Pace, Promise, Survey, Target
 from ..export.notes import Notes
 
 
@@ -52,7 +52,8 @@ class Targets:
         if is_new:
             renderer, scene, camera, *_ = drawing
             told = drawing.share(0.0, 1.0, "measuring the scene")
-            self._surveys[key] = Survey(renderer, scene, camera, drawing.plain(), told)
+            turns = 1 if target.seconds is None else TIMED_TURNS
+            self._surveys[key] = Survey(renderer, scene, camera, drawing.plain(), told, turns)
         left = target if target.seconds is None else Target(seconds=max(target.seconds - reading, 1e-3))
         self.promise = self._surveys[key].promise(left, self._pace.factor)
         if is_new:
