@@ -55,7 +55,7 @@ CASES = [
     ("leaves", "mip", {"samples": 2, "outputs": SUMMED}),
     ("glass", "quad", {"refraction": True, "reflections": True}),
     ("glass_shadows", "mip", {"refraction": True}),
-    ("mirrored", "quad", {"bounces": 1}),
+    ("finishes", "quad", {"bounces": 1}),
     *(("polygon_shadows", method, {"lights_splats": True}) for method in ("quad", "mip")),
     ("large_lamp_shadows", "quad", {}),
     ("many_finishes", "mip", {}),

@@ -100,7 +100,7 @@ class Tile:
 
     def __init__(self, surfaces):
         self.surfaces, self.ran, self.swapped = surfaces, [], 0
-        self.resources = SimpleNamespace(made_from={}, arrivals=0)
+        self.resources = SimpleNamespace(made_from={}, arrivals=0, follows=lambda repeats: False)
         self.shared, self.repeats = SimpleNamespace(kept=lambda key, make: make()), Repeats()
 
     def run(self, p):
