@@ -502,6 +502,11 @@ def test_of_flat_objects_the_largest_that_is_seen_is_the_mirror():
     assert others == 1 and found.normal == pytest.approx((0, 0, 1)) and {0, 1} <= set(found.left_out)
     assert 3 not in found.left_out
     assert mirror_of(Scene(polygons=[wet(DULL)]), view) == (None, 0)
+    ahead, back = view, replace(view, matrix_world=look_at(view.matrix_world[:3, 3], (0, -20, 0)))
+    larger = np.diag((3.0, 3, 1, 1))
+    larger[1, 3] = -60
+    two = Scene(polygons=[wet(), replace(wet(), matrix_world=larger)])
+    assert [mirror_of(two, one, (ahead, back))[0] is None for one in (ahead, back)] == [True, False]
     made = plan(scene, view, SETTINGS)
     assert dict(made.skipped)["reflections in 1 flat objects"] == "the largest is the frame's mirror"
     assert any(name == "MIRROR" for name, _ in made.features)

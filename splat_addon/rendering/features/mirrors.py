@@ -16,7 +16,7 @@ def mirror(planning):
     """The frame's mirror, or None: a picture of what is reflected has none."""
     if planning.probes or planning.find(missing):
         return None
-    found, others = mirror_of(planning.scene, planning.camera)
+    found, others = mirror_of(planning.scene, planning.camera, planning.viewers.lamps)
     if others:
         planning.skip(f"reflections in {others} flat objects", "the largest is the frame's mirror")
     return found

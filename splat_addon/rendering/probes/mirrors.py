@@ -30,8 +30,12 @@ class Mirror:
     left_out: tuple[int, ...]
 
 
-def mirror_of(scene: Scene, camera: Camera) -> tuple[Mirror | None, int]:
-    """The largest flat glossy object that the camera may see, and the number of others."""
+def mirror_of(scene: Scene, camera: Camera, around: tuple[Camera, ...] = ()) -> tuple[Mirror | None, int]:
+    """The largest flat glossy object that the camera or those around it may see, and the number of others. None if it
+    is not the camera that may see it.
+
+    around: the cameras of a panorama's faces, which all have the same mirror, so that their borders do not show.
+    """
     table = scene.table
     are_glossy = glossy(table)
     if not are_glossy.any():
@@ -39,10 +43,16 @@ def mirror_of(scene: Scene, camera: Camera) -> tuple[Mirror | None, int]:
     middles, axes = boxes(table)
     lengths = np.sort(np.linalg.norm(axes, axis=2), axis=1)
     are_flat = (lengths[:, 0] <= FLATTEST * lengths[:, 2]) & (lengths[:, 1] > FLATTEST * lengths[:, 2])
-    rows = [row for row in np.flatnonzero(are_glossy & are_flat) if _may_see(camera, table.world_corners[row])]
+    rows = [
+        row
+        for row in np.flatnonzero(are_glossy & are_flat)
+        if any(_may_see(one, table.world_corners[row]) for one in (camera, *around))
+    ]
     if not rows:
         return None, 0
     row = max(rows, key=lambda row: lengths[row, 1] * lengths[row, 2])
+    if not _may_see(camera, table.world_corners[row]):
+        return None, len(rows) - 1
     return _mirror(table, row, middles[row], axes[row], camera), len(rows) - 1
 
 
