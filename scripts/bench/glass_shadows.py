@@ -14,6 +14,7 @@ import numpy as np
 
 import splat_addon
 from measuring.blender_scene import lit_scene, rendered
+from splat_addon.rendering.presets import PRESETS
 
 from .reflecting import chosen
 from .reflecting.glass import GLOBE, turned
@@ -40,7 +41,7 @@ CASES = {
 def arguments(parser) -> None:
     parser.add_argument("--samples", type=int, default=256, help="of Cycles, a pixel")
     parser.add_argument("--cases", nargs="+", choices=tuple(CASES), default=tuple(CASES))
-    parser.add_argument("--preset", default="balanced")
+    parser.add_argument("--preset", choices=tuple(PRESETS), default="balanced")
     parser.add_argument("--set", nargs="*", default=(), metavar="NAME=VALUE", help="render properties of ours")
 
 

@@ -15,10 +15,10 @@ import bpy
 import numpy as np
 
 import splat_addon
+from bench.reflecting import chosen
 from measuring.blender_scene import rendered
 from measuring.forest import far_rows, forest, stack
 from splat_addon.reference.metrics import srgb
-from splat_addon.rendering.presets import PRESETS
 from splat_addon.whole_files import whole_file
 
 QUICK = {"size": (48, 36), "samples": 2, "trees": 20, "moves": 1, "resolution": 24}
@@ -33,6 +33,7 @@ def arguments(parser) -> None:
     parser.add_argument("--resolution", type=int, default=128, help="of the surfels of a card, and of a tree")
     parser.add_argument("--kinds", nargs="+", choices=KINDS, default=KINDS)
     parser.add_argument("--set", nargs="*", default=(), metavar="NAME=VALUE", help="render properties of ours")
+    parser.set_defaults(preset="balanced")
 
 
 def run(options, report) -> None:
@@ -125,16 +126,6 @@ def kept(scene: bpy.types.Scene, options) -> np.ndarray:
         with whole_file(path, np.load) as stream:
             np.save(stream, cycles(scene, options.samples))
     return np.load(path)
-
-
-def chosen(scene: bpy.types.Scene, options) -> None:
-    """Our engine with the preset, and what was set by hand."""
-    scene.render.engine, ours = "SURFEL_SPLATTING", scene.surfel_splatting
-    for name, value in PRESETS["balanced"].render_values.items():
-        setattr(ours, name, value)
-    for pair in options.set:
-        name, _, value = pair.partition("=")
-        setattr(ours, name, type(getattr(ours, name))(float(value)))
 
 
 def selected(objects: list[bpy.types.Object]) -> None:

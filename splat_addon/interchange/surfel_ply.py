@@ -13,6 +13,7 @@
 | material | int | index of the material slot |
 | roughness, metallic, emission_0 .. emission_2, uvs_0 ... | float | where the surfels have them (`OPTIONAL_LAYOUT`) |
 | clip_line_0, clip_line_1, clip_line_2_0, clip_line_2_1 | short | likewise, packed as `clip_lines` says |
+| normal_along_x_0 .., normal_along_y_0 .. | short | likewise, packed as `Surfels` says |
 
 Comments: "surfel_splatting 1"; "origin X Y Z" if it is not 0; "solid" if the surfels are solid.
 """
