@@ -6,11 +6,13 @@ pictures of eight. Then the choice for each target is drawn. Its error is that b
 median of the turns, in processor seconds, which other load lengthens least. *Of target* is either divided by the target
 where one was promised; *of expected* by what was expected. Targets are multiples of the closest and the fastest that
 was measured. *Speed* is the time of the fastest choice in the same turns, divided by that when the scene was measured:
-how much slower the machine has become.
+how much slower the machine has become. Each is drawn once before it is timed, as frames of an animation follow another.
 """
 
 from __future__ import annotations
 
+import math
+import statistics
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
@@ -19,7 +21,7 @@ from time import process_time
 
 from bench.trade.cases import CASES, View
 from measuring.report import Table
-from measuring.timing import in_turn, processor
+from measuring.timing import in_pairs, processor
 from splat_addon.reference import scenes
 from splat_addon.rendering import Light, Renderer, Settings
 from splat_addon.trade import TIMED_TURNS, ExactPictures, Survey, Target
@@ -71,13 +73,14 @@ def _promises(renderer: Renderer, scene, camera, settings: Settings, turns: int)
         promise = survey.promise(target)
         if not promise.is_kept:
             continue
-        jobs = {
-            choice: partial(renderer.render, scene, camera, choice.of(settings), is_repeatable=True)
+        job, unit = (
+            partial(renderer.render, scene, camera, choice.of(settings), is_repeatable=True)
             for choice in (promise.choice, fastest.choice)
-        }
-        drawn = in_turn(jobs, turns, processor)
-        took, speed = drawn.spread(promise.choice).median, drawn.spread(fastest.choice).median / fastest.seconds
-        flip = row_of(promise.choice, drawn.results[promise.choice], truth, [took]).flip
+        )
+        ((_, drawn),) = in_pairs({promise.choice: job}, unit, turns, math.inf, processor)
+        took = drawn.own().median
+        speed = statistics.median(beside for _, beside in drawn.values) / fastest.seconds
+        flip = row_of(promise.choice, drawn.result, truth, [took]).flip
         is_error = target.seconds is None
         yield {
             "target": f"FLIP {target.flip:.4f}" if is_error else f"{target.seconds:.2g} s",
