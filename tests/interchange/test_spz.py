@@ -43,9 +43,9 @@ def test_gaussians_are_where_and_as_they_were(read, version, degree, angle):
         (spz_file(*gaussians(), 2, count=10**6), "has 1,000,000 Gaussians, for which its .* bytes are too few"),
         (spz_file(*gaussians(), 2, count=2**32 - 1), "has 4,294,967,295 Gaussians"),
         (spz_file(*gaussians(), 2)[:200], "cut off or damaged"),
-        (gzip.compress(b"NGSP"), "ends in its header"),
-        (gzip.compress(b"NGSP\x09" + bytes(30)), "has version 9"),
-        (gzip.compress(b"ply\n"), "compressed with gzip; unpack it"),
+        (gzip.compress(b"NGSP", mtime=0), "ends in its header"),
+        (gzip.compress(b"NGSP\x09" + bytes(30), mtime=0), "has version 9"),
+        (gzip.compress(b"ply\n", mtime=0), "compressed with gzip; unpack it"),
     ],
 )
 def test_damage_is_one_sentence(read, data, sentence):
