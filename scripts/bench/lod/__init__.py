@@ -36,7 +36,7 @@ from measuring.models import in_view, load
 from measuring.timer_queries import has_timer_queries, timed_draws
 from measuring.timing import Spread, in_turn, wall
 from splat_addon.reference.metrics import mean_flip, psnr
-from splat_addon.rendering import Renderer, Settings, open_device, renderer
+from splat_addon.rendering import Renderer, Settings, open_device, planner
 from splat_addon.rendering.detail.hierarchies import hierarchy_of
 from splat_addon.rendering.plan import cut_choice
 from splat_addon.sampling import PLAIN, sample_mesh
@@ -46,7 +46,7 @@ QUICK = {"size": 64, "resolutions": [60], "model": "bunny.obj.gz", "dolly": 3}
 #: name -> the eye in half diagonals of the model's box
 VIEWS = {"filling": (1.2, 0.7, 2.6), "tiny": (76.0, 44.0, 165.0)}
 #: module -> its functions that plan a frame or choose its surfels; none of them calls another
-DECIDING = {renderer: ("plan",), cut_choice: ("sight", "cut_blocks", "entries_of")}
+DECIDING = {planner: ("plan",), cut_choice: ("sight", "cut_blocks", "entries_of")}
 COLUMNS = (
     *"surfels view shadow drawn all,_ms cut,_ms following,_ms cut/all bare/cut".split(),
     *"decided PSNR FLIP MiB,_all MiB,_cut uploads".split(),
