@@ -9,5 +9,5 @@ void crowns_prepare(inout Shaded s) {
   float weight;
   vec3 place = (frame.to_cells * vec4(eye_position(s.texel, s.mean.depth), 1.0)).xyz;
   vec4 here = cells_at(place, normalize(mat3(frame.to_cells) * s.normal), false, weight);
-  if (weight > 0.0) leave_open(min(here.a, 2.0 * open_share), s.mean.color);
+  if (weight > 0.0) leave_open(min(here.a, open_share), s.mean.color);
 }
