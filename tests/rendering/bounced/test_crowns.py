@@ -66,8 +66,8 @@ def test_crowns_that_are_turned_scaled_and_many_have_the_same_shares(leaves):
     assert many.open.mean() == pytest.approx(alone.open.mean(), abs=0.05)
 
 
-#: Mean light of the leaves that are seen from 30 units, and from 4: rays to 24 directions from each of 4,700 places, and
-#: the bounces of Ambient Occlusion.
+#: Mean light of the leaves that are seen from 4 or 30 units: rays to 24 directions from each of 4,700 places, and the
+#: bounces of Ambient Occlusion.
 SEEN_BY_RAYS = 0.846
 
 
