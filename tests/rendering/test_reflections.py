@@ -18,7 +18,6 @@ from splat_addon.rendering import (
     PolygonInstance,
     Renderer,
     Scene,
-    Settings,
     look_at,
     make_polygons,
     plan,
@@ -26,7 +25,6 @@ from splat_addon.rendering import (
 from splat_addon.rendering.features import reflections
 from splat_addon.rendering.plan.programs import describe
 from splat_addon.rendering.probes import drawing, pictures
-from splat_addon.rendering.probes.mirrors import mirror_of
 from splat_addon.rendering.probes.pictures import LEVEL_SIDE, _lobes
 from splat_addon.rendering.probes.places import MAX_PROBES, probes_of
 from splat_addon.rendering.probes.screen import wider_camera
@@ -34,61 +32,24 @@ from splat_addon.rendering.scene.finish import Finish
 from splat_addon.rendering.scene.light_probe import LightProbe
 from splat_addon.rendering.scene.octahedral import Octahedral, bordered
 from splat_addon.rendering.shadows.receivers import Viewers
-
-SETTINGS = Settings(method="quad", reflections=True)
-SKY, RED, GREEN = np.array([(0.1, 0.2, 0.9), (0.8, 0.1, 0.1), (0.1, 0.7, 0.1)])
-HEIGHT, RADIUS, BORDER = 1.0, 0.5, 0.4
-CHROME = Material(roughness=0.0, metallic=1.0)
-
-
-def glowing(color):
-    return Material(roughness=1.0, ior=1.0, emission=tuple(color))
-
-
-def floor():
-    """A wide floor at the height 0, which glows red on the left and green on the right."""
-    places = [(-60, -60, 0), (BORDER, -60, 0), (BORDER, 60, 0), (-60, 60, 0), (60, -60, 0), (60, 60, 0)]
-    made = make_polygons(places, [(0, 1, 2), (0, 2, 3), (1, 4, 5), (1, 5, 2)], colors=np.tile((0.0, 0, 0, 1), (12, 1)))
-    return replace(made, materials=np.repeat(np.array([0, 1], np.int32), 6))
-
-
-def ball(material=CHROME, place=(0.0, 0.0, HEIGHT), radius=RADIUS, **fields):
-    matrix = np.diag((radius, radius, radius, 1.0))
-    matrix[:3, 3] = place
-    white = scenes.round_polygons(48)
-    white = replace(white, colors=np.ones_like(white.colors))
-    return PolygonInstance(white, matrix, materials=(material,), **fields)
-
-
-FLOOR = PolygonInstance(floor(), materials=(glowing(RED), glowing(GREEN)))
-MIRROR = Scene(polygons=[ball(), FLOOR], world=tuple(SKY))
-
-
-def camera(size=(64, 64)):
-    return Camera.perspective(look_at((0.4, -4, 1.4), (0, 0, 1)), 0.32, size, near=0.1, far=500)
-
-
-def rays_of(view):
-    """Whether each pixel sees the ball, and where, and what it reflects there: (h, w), (n, 3) and (n, 3)."""
-    eye = view.matrix_world[:3, 3]
-    along = view.points_at(np.ones(view.size[::-1])) - eye
-    along /= np.linalg.norm(along, axis=2, keepdims=True)
-    middle = np.array((0, 0, HEIGHT)) - eye
-    nearest = along @ middle
-    square = RADIUS**2 - (middle @ middle - nearest**2)
-    hits = square > (0.15 * RADIUS) ** 2  # not at the rim, which is a polygon
-    distance = nearest[hits] - np.sqrt(square[hits])
-    place = eye + distance[:, None] * along[hits]
-    normal = (place - (0, 0, HEIGHT)) / RADIUS
-    mirrored = along[hits] - 2 * (along[hits] * normal).sum(axis=1, keepdims=True) * normal
-    return hits, place, mirrored
-
-
-def true_colors(place, direction):
-    """What rays meet: the floor, or the sky."""
-    down = direction[:, 2] < -1e-3
-    at = place[:, 0] - direction[:, 0] * place[:, 2] / np.where(down, direction[:, 2], -1.0)
-    return np.where(down[:, None], np.where(at[:, None] < BORDER, RED, GREEN), SKY)
+from tests.rendering.reflecting_scenes import (
+    CHROME,
+    DULL,
+    FLOOR,
+    GREEN,
+    HEIGHT,
+    MIRROR,
+    RADIUS,
+    RED,
+    SETTINGS,
+    SKY,
+    ball,
+    camera,
+    floor,
+    glowing,
+    rays_of,
+    true_colors,
+)
 
 
 def test_a_ball_of_metal_reflects_what_rays_meet(render):
@@ -329,9 +290,6 @@ def test_probes_are_drawn_once_for_a_scene(on_device, monkeypatch, coarse):
     assert on_device(lambda device: list(draw(device))) == [1, 1, 1, 2, 3, 4, 5]
 
 
-DULL = Material(roughness=0.5)
-
-
 @pytest.mark.parametrize(
     ("scene", "settings", "why"),
     [
@@ -416,100 +374,6 @@ def test_lobes_are_around_their_direction_and_keep_what_is_even():
         mean = weights @ directions
         mean /= np.linalg.norm(mean, axis=1, keepdims=True)
         assert (mean * directions).sum(axis=1).min() > 0.995
-
-
-def wall():
-    """Behind a floor at the height 0, from -2 to 2 and up to 1; it glows red on the left and green on the right."""
-    places = [(-2, 2, 0), (0, 2, 0), (0, 2, 1), (-2, 2, 1), (2, 2, 0), (2, 2, 1)]
-    made = make_polygons(places, [(0, 1, 2), (0, 2, 3), (1, 4, 5), (1, 5, 2)], colors=np.tile((0.0, 0, 0, 1), (12, 1)))
-    made = replace(made, materials=np.repeat(np.array([0, 1], np.int32), 6))
-    return PolygonInstance(made, materials=(glowing(RED), glowing(GREEN)))
-
-
-def wet(material=CHROME):
-    square = make_polygons([(-3, -3, 0), (3, -3, 0), (3, 2, 0), (-3, 2, 0)], [(0, 1, 2), (0, 2, 3)])
-    return PolygonInstance(replace(square, colors=np.ones_like(square.colors)), materials=(material,))
-
-
-def before_the_wall(is_parallel, size=(96, 64)):
-    matrix = look_at((0.3, -4, 1.5), (0, 1, 0))
-    if is_parallel:
-        return Camera.orthographic(matrix, 3.0, size, 0.1, 100)
-    return Camera.perspective(matrix, 0.6, size, near=0.1, far=100)
-
-
-@pytest.mark.parametrize("is_parallel", [False, True])
-def test_a_flat_mirror_shows_what_rays_meet(is_parallel, render):
-    """All but the pixels at edges have the colour that the mirrored ray meets, however the samples lie in them."""
-    view = before_the_wall(is_parallel)
-    scene = Scene(polygons=[wet(), wall()], world=tuple(SKY))
-    frame, mean = (render(scene, view, replace(SETTINGS, samples=samples)) for samples in (1, 3))
-    near, far = (view.points_at(np.full(frame.depth.shape, depth)) for depth in (1.0, 2.0))
-    along = far - near
-    place = near - along * (near[..., 2:] / along[..., 2:])
-    seen = view.points_at(frame.depth)
-    is_floor = (np.abs(place[..., :2]) < (2.9, 1.9)).all(axis=2) & (np.abs(seen - place).max(axis=2) < 0.1)
-    up = place + along * [1, 1, -1] * ((2 - place[..., 1:2]) / along[..., 1:2])
-    meets = (up[..., 2] < 1) & (np.abs(up[..., 0]) < 2)
-    true = np.where(meets[..., None], np.where(up[..., :1] < 0, RED, GREEN), SKY)
-    assert is_floor.sum() > 1500 and 500 < (is_floor & meets).sum() < is_floor.sum() - 100
-    off, off_mean = (np.abs(one.color[..., :3] - true).max(axis=2)[is_floor] for one in (frame, mean))
-    assert np.mean(off < 0.02) > 0.93 and np.median(off) < 5e-3
-    assert np.mean(off_mean < 0.02) > 0.8 and np.median(off_mean) < 5e-3
-
-
-def test_a_rough_mirror_blurs_what_is_far_from_it_more(render):
-    """The border of the colours is sharp at the foot of the wall and wide at its top."""
-    view = before_the_wall(False, (192, 128))
-    scene = Scene(polygons=[wet(Material(roughness=0.4, metallic=1.0)), wall()], world=tuple(SKY))
-    frame = render(scene, view, SETTINGS)
-    place = view.points_at(frame.depth)
-    widths = []
-    for y in (1.9, 0.7):
-        row = np.abs(np.where(np.abs(place[:, 96, 2]) < 1e-3, place[:, 96, 1], np.inf) - y).argmin()
-        share = frame.color[row, :, 0] / (frame.color[row, :, 0] + frame.color[row, :, 1])
-        inside = slice(40, 152)
-        widths.append(np.count_nonzero((share[inside] > 0.25) & (share[inside] < 0.75)))
-    assert widths[0] + 3 < widths[1]
-
-
-def test_a_mirror_is_drawn_once_for_a_view(on_device, monkeypatch):
-    made, real = [], drawing.MirrorPicture
-    monkeypatch.setattr(drawing, "MirrorPicture", lambda *given: made.append(given) or real(*given))
-    scene, view = Scene(polygons=[wet(), wall()], world=tuple(SKY)), before_the_wall(False, (12, 8))
-
-    def draw(device):
-        renderer = Renderer(device)
-        for of, seen in (
-            ((scene, view)),
-            (scene, view),
-            (replace(scene, world=(1, 1, 1)), view),
-            (scene, camera((8, 8))),
-        ):
-            renderer.render(of, seen, replace(SETTINGS, samples=3))
-            yield len(made)
-
-    assert on_device(lambda device: list(draw(device))) == [1, 1, 2, 3]
-
-
-def test_of_flat_objects_the_largest_that_is_seen_is_the_mirror():
-    small = replace(wet(), matrix_world=np.diag((0.1, 0.1, 1.0, 1.0)))
-    behind = np.eye(4)
-    behind[1, 3] = -20
-    scene = Scene(polygons=[small, wet(), replace(wet(), matrix_world=behind), wall()])
-    view = before_the_wall(False)
-    found, others = mirror_of(scene, view)
-    assert others == 1 and found.normal == pytest.approx((0, 0, 1)) and {0, 1} <= set(found.left_out)
-    assert 3 not in found.left_out
-    assert mirror_of(Scene(polygons=[wet(DULL)]), view) == (None, 0)
-    ahead, back = view, replace(view, matrix_world=look_at(view.matrix_world[:3, 3], (0, -20, 0)))
-    larger = np.diag((3.0, 3, 1, 1))
-    larger[1, 3] = -60
-    two = Scene(polygons=[wet(), replace(wet(), matrix_world=larger)])
-    assert [mirror_of(two, one, (ahead, back))[0] is None for one in (ahead, back)] == [True, False]
-    made = plan(scene, view, SETTINGS)
-    assert dict(made.skipped)["reflections in 1 flat objects"] == "the largest is the frame's mirror"
-    assert any(name == "MIRROR" for name, _ in made.features)
 
 
 def test_no_rim_of_a_box_shows_on_a_floor_in_it(render):
