@@ -7,7 +7,7 @@ import numpy as np
 
 from ..plan.graph import Part
 from ..plan.hosts import LIT_HOSTS
-from ..probes.flat_pictures import PICTURE_MAPS
+from ..probes.flat_pictures import PICTURE_MAPS, window_of
 from ..probes.mirrors import mirror_of
 from .reflections import missing
 
@@ -38,10 +38,9 @@ def _normal(tile) -> tuple[float, ...]:
 
 
 def _window(tile) -> tuple[float, float, float, float]:
-    """The right and bottom of the mirror's picture, and its pixels per unit, at depth 1 or in the view's units."""
-    seen = tile.shared.mirror
-    left, right, bottom, top = (edge * (tile.view.scale if tile.camera.is_orthographic else 1) for edge in seen.window)
-    return -left, bottom, seen.size[0] / (right - left), seen.size[1] / (top - bottom)
+    """As `window_of`, from the right of the mirror's picture, which is turned from left to right."""
+    left, *others = window_of(tile, tile.shared.mirror)
+    return -left, *others
 
 
 VALUES = {

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from ..probes.flat_pictures import window_of
 from .glass import glass
 from .reflections import sees_screen
 
@@ -13,15 +14,8 @@ def is_seen(planning) -> bool:
     return planning.find(glass) or planning.find(sees_screen)
 
 
-def _window(tile) -> tuple[float, float, float, float]:
-    """The left and bottom of the picture, and its pixels per unit, at depth 1 or in the view's units."""
-    seen = tile.shared.screen
-    left, right, bottom, top = (edge * (tile.view.scale if tile.camera.is_orthographic else 1) for edge in seen.window)
-    return left, bottom, seen.size[0] / (right - left), seen.size[1] / (top - bottom)
-
-
 VALUES = {
-    "screen_window": ("vec4", _window),
+    "screen_window": ("vec4", lambda tile: window_of(tile, tile.shared.screen)),
     "screen_size": ("vec2", lambda tile: tile.shared.screen.size),
     "screen_scale": ("float", lambda tile: tile.view.scale),
 }

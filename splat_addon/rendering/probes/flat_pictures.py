@@ -30,3 +30,10 @@ def _halved(pixels: np.ndarray) -> np.ndarray:
     height, width = (edge + edge % 2 for edge in pixels.shape[:2])
     padded = np.pad(pixels, ((0, height - len(pixels)), (0, width - pixels.shape[1]), (0, 0)), "edge")
     return padded.reshape(height // 2, 2, width // 2, 2, -1).mean(axis=(1, 3), dtype=np.float32)
+
+
+def window_of(tile, seen) -> tuple[float, float, float, float]:
+    """The left and bottom of a picture that a tile's frame looks up, and its pixels per unit, at depth 1 or in the
+    view's units. seen: its `window` and `size`."""
+    left, right, bottom, top = (edge * (tile.view.scale if tile.camera.is_orthographic else 1) for edge in seen.window)
+    return left, bottom, seen.size[0] / (right - left), seen.size[1] / (top - bottom)
