@@ -23,7 +23,7 @@ ON_BLENDERS_DEVICE = (
     *LEAVES_PICTURES,
     "tests/rendering/test_device.py",
     "tests/rendering/test_device_draws.py",
-    "tests/rendering/test_loading.py::test_the_whole_picture_is_that_of_a_render_bit_by_bit",
+    "tests/rendering/loading/test_arrival.py::test_the_whole_picture_is_that_of_a_render_bit_by_bit",
     "tests/rendering/test_multisampling.py::test_what_cannot_be_multisampled_is_refused",
     "tests/rendering/test_multisampling.py::test_blenders_gpu_module_has_no_multisampled_textures",
     "tests/rendering/test_refinement.py::test_at_rest_slices_change_nothing_until_the_picture_is_complete",

@@ -294,7 +294,7 @@ def with_styles(scene, camera):
     return replace(scene, surfels=tuple(surfels), polygons=tuple(polygons)), camera
 
 
-#: tests/rendering/test_polygons.py compares them with the truth.
+#: tests/rendering/test_polygons*.py compare them with the truth.
 HYBRID = {
     "many_finishes": lambda: of_many_finishes(*scenes.polygons(count=COUNT, size=SIZE)),
     "crowd": lambda: crowded(*scenes.sphere(count=3000, size=SIZE)),

@@ -10,11 +10,13 @@ from splat_addon.rendering import (
     Camera,
     Material,
     PolygonInstance,
+    Renderer,
     Scene,
     Settings,
     look_at,
     make_polygons,
 )
+from splat_addon.rendering.probes.screen import wider_camera
 
 SETTINGS = Settings(method="quad", reflections=True)
 SKY, RED, GREEN = np.array([(0.1, 0.2, 0.9), (0.8, 0.1, 0.1), (0.1, 0.7, 0.1)])
@@ -71,3 +73,10 @@ def true_colors(place, direction):
     down = direction[:, 2] < -1e-3
     at = place[:, 0] - direction[:, 0] * place[:, 2] / np.where(down, direction[:, 2], -1.0)
     return np.where(down[:, None], np.where(at[:, None] < BORDER, RED, GREEN), SKY)
+
+
+def seen_by_probe(device, scene, view):
+    """A view's frame, that of the scene's first probe, and what the camera sees: its wider camera and picture."""
+    renderer = Renderer(device)
+    frame, probes = renderer.render(scene, view, SETTINGS), renderer.planner.probes
+    return frame, probes._kept[1]._frames[0], (wider_camera(view), probes._screen[1]._seen)
