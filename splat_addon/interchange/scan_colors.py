@@ -45,14 +45,20 @@ def on_ramp(values: np.ndarray, ramp: np.ndarray, low: float | None = None, high
     is_known = np.isfinite(numbers)
     if not is_known.any():
         return np.tile(np.float32(UNKNOWN), (len(numbers), 1))
-    found = np.quantile(numbers[is_known], (_OUTSIDE, 1 - _OUTSIDE))
-    low, high = (end if given is None else given for end, given in zip(found, (low, high), strict=True))
+    if low is None or high is None:
+        low, high = (end if given is None else given for end, given in zip(ends_of(numbers), (low, high), strict=True))
     with np.errstate(invalid="ignore"):
         share = np.clip((numbers - low) / (high - low), 0, 1) if high != low else np.full(len(numbers), 0.5)
     steps = np.linspace(0, 1, len(ramp))
     colors = np.stack([np.interp(share, steps, channel) for channel in np.asarray(ramp).T], axis=1)
     colors[~is_known] = UNKNOWN
     return colors.astype(np.float32)
+
+
+def ends_of(values: np.ndarray) -> tuple[float, float]:
+    """The range of numbers that a ramp covers if none is given: all but the lowest and highest 2 %; 0 to 1 of none."""
+    known = values[np.isfinite(values)]
+    return tuple(np.quantile(known, (_OUTSIDE, 1 - _OUTSIDE)).tolist()) if len(known) else (0.0, 1.0)
 
 
 def of_classes(values: np.ndarray) -> np.ndarray:

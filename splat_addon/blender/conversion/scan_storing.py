@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from ...interchange import PointPieces, Points
-from ...interchange.scan_colors import GREYS, RAMP, of_classes, on_ramp
+from ...interchange.scan_colors import GREYS, RAMP, ends_of, of_classes, on_ramp
 from ...sampling import surfels_from_points
 from ...streaming import write_points
 from ...surfels import Surfels
@@ -17,9 +17,6 @@ from ..scan_color_settings import ATTRIBUTE_OF
 
 #: How far above a scan, in its extents, what flew over it is taken to have been.
 _HIGH = 100.0
-
-#: Shares of the values below and above the range of colours.
-_OUTSIDE = 0.02
 
 
 class StoredScan:
@@ -109,8 +106,7 @@ class StoredScan:
         if name and name not in sample.attributes:
             raise ValueError(f"The points have no {name} to be coloured by.")
         values = sample.attributes[name] if name else sample.positions[:, 2]
-        values = values[np.isfinite(values)]
-        low, high = np.quantile(values, (_OUTSIDE, 1 - _OUTSIDE)) if len(values) else (0.0, 1.0)
+        low, high = ends_of(values)
         ramp = GREYS if color_by == "INTENSITY" else RAMP
 
         def painted(points: Points) -> np.ndarray:

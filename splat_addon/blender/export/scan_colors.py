@@ -11,11 +11,14 @@ from typing import NamedTuple
 import bpy
 import numpy as np
 
-from ...interchange.scan_colors import GREYS, RAMP, of_classes, on_ramp
+from ...interchange.scan_colors import GREYS, RAMP, ends_of, of_classes, on_ramp
 from ...primaries import converted
+from ...rendering.scene import Paint
 from ...surfels import Surfels
 from ..enum_values import check_choices
+from ..geometry.attributes import offset_of
 from ..geometry.derived import Derived
+from ..geometry.reading import read_values
 from ..ids import OBJECT_SETTINGS
 from ..materials.ramps import table
 from ..working_space import from_rec709
@@ -51,7 +54,7 @@ def _scan_colored(
     if kind == "COLOR":
         return surfels
     if kind == "HEIGHT":
-        row = tuple(np.array(object_.matrix_world, np.float64)[2].tolist())
+        row = _row(np.array(object_.matrix_world, np.float64))
         digest, values = hash(row), partial(_heights, surfels, row)
     elif column is None:
         what = f"attribute {settings.color_column!r} of one number per point" if settings.color_column else "attribute"
@@ -61,11 +64,51 @@ def _scan_colored(
         return surfels
     else:
         digest, values = column.digest, lambda: column.values
-    texture = settings.color_ramp
-    ramp = table(texture.color_ramp)[:, :3].clip(0) if texture is not None and texture.use_color_ramp else None
-    ends = (None, None) if settings.color_is_automatic else (settings.color_from, settings.color_to)
+    ramp, ends = _ramp(settings)
     key = kind, digest, ends, None if ramp is None else ramp.tobytes()
     return derived.get(surfels, key, lambda: _painted(surfels, _colors(kind, values(), ramp, ends)))
+
+
+def stream_paint(object_: bpy.types.Object, to_origin: np.ndarray, notes) -> Paint | None:
+    """The colours that an evaluated object's settings choose for what views read from its file. to_origin: (4, 4) from
+    the file's coordinates to the object's."""
+    settings = getattr(object_.original, OBJECT_SETTINGS)
+    check_choices(settings, "object properties")
+    kind = settings.color_by
+    if kind == "COLOR":
+        return None
+    if kind != "HEIGHT":
+        notes.add(
+            f"{object_.name} keeps its own colours, as its file holds no {settings.color_column or 'such numbers'}; "
+            "store it with these colours, or colour it by height"
+        )
+        return None
+    row = _row(np.array(object_.matrix_world, np.float64) @ to_origin)
+    ramp, ends = _ramp(settings)
+    if settings.color_is_automatic:  # of all that is in the file, and not of what a view happens to read
+        ends = ends_of(_heights_of_kept(object_))
+    key = row, ends, None if ramp is None else ramp.tobytes()
+    return Paint(key, lambda surfels: _painted(surfels, _colors(kind, _heights(surfels, row), ramp, ends)))
+
+
+def _heights_of_kept(object_: bpy.types.Object) -> np.ndarray:
+    """The world's Z of the surfels that the mesh of an evaluated object keeps of its file."""
+    mesh, row = object_.original.data, np.array(object_.matrix_world, np.float64)[2]
+    kept = mesh.attributes["position"].data  # empty in edit mode
+    places = read_values(kept, "vector", 3, len(kept))
+    return (places + offset_of(mesh)) @ row[:3] + row[3]
+
+
+def _row(matrix: np.ndarray) -> tuple[float, ...]:
+    """What gives the world's Z, of a (4, 4) matrix to the world."""
+    return tuple(matrix[2].tolist())
+
+
+def _ramp(settings) -> tuple[np.ndarray | None, tuple[float | None, float | None]]:
+    """The (n, 3) colours of the object's own ramp, if it has one, and the values at its ends; None: automatic ones."""
+    texture = settings.color_ramp
+    ramp = table(texture.color_ramp)[:, :3].clip(0) if texture is not None and texture.use_color_ramp else None
+    return ramp, (None, None) if settings.color_is_automatic else (settings.color_from, settings.color_to)
 
 
 def _heights(surfels: Surfels, row: tuple[float, ...]) -> np.ndarray:

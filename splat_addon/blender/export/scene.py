@@ -38,7 +38,7 @@ from ..geometry.derived import Derived
 from ..geometry.gaussian_clouds import is_gaussian_cloud
 from ..geometry.points_proxy import is_solid, shown_points, shows_as_points
 from ..geometry.sources import asked_of, may_change, owner_of
-from ..ids import OBJECT_SETTINGS, POINT_ATTRIBUTES
+from ..ids import POINT_ATTRIBUTES
 from ..materials.material_override import overridden, override_of
 from ..materials.surface_textures import TextureStore
 from ..mesh_sampling_settings import Form, density_of_meshes, form_of, looks_of_meshes
@@ -50,7 +50,7 @@ from .light_linking import LightSets
 from .light_probes import is_sphere_probe, light_probe_of
 from .live_meshes import LiveMesh, LiveMeshes, Manner, Place
 from .notes import Notes
-from .scan_colors import Column, painter
+from .scan_colors import Column, painter, stream_paint
 from .shading import light_of, shading_material
 from .streams import Streams, not_followed
 from .styles import style_of
@@ -489,15 +489,16 @@ def _streamed(object_, stream: Stream, depsgraph, fields: dict, store: SurfelSto
         notes.add(f"{object_.name} keeps its own colours under the overriding material, as they come from a file")
     to_origin = np.eye(4)
     to_origin[:3, 3] = offset_of(object_.original.data) - stream.file.origin
-    kept = stream.coarsest, 0, 0, None
-    if getattr(object_.original, OBJECT_SETTINGS).color_by != "COLOR":
-        notes.add(f"{object_.name} keeps its own colours, as they come from a file")
-    made = _instances(object_, kept, depsgraph, fields, store, notes, None)
+    coarsest, paint = stream.coarsest, stream_paint(object_, to_origin, notes)
+    if paint is not None:
+        coarsest = store.derived.get(coarsest, paint.key, lambda: paint.of(stream.coarsest))
+    made = _instances(object_, (coarsest, 0, 0, None), depsgraph, fields, store, notes, None)
     if len(made) > 1:
         notes.add(
             f"{object_.name} cuts no hole, as its surfels come from a file and only some of its materials are a Holdout"
         )
-    return [replace(instance, shape=stream.coarsest, stream=stream, matrix_world=to_origin) for instance in made[:1]]
+    given = {"shape": coarsest, "stream": stream, "paint": paint, "matrix_world": to_origin}
+    return [replace(instance, **given) for instance in made[:1]]
 
 
 @contextmanager

@@ -18,8 +18,9 @@ import numpy as np
 from ...hierarchy import Sight
 from ...streaming import Stream, Unreadable
 from ...streaming.stream import Gathered, Seen
+from ...surfels import Surfels
 from ..assembly.panorama_faces import DENSITY
-from ..scene import Instance, Scene
+from ..scene import Instance, Paint, Scene
 from ..scene.camera import Camera
 from ..scene.panorama import Panorama
 from ..settings import Settings
@@ -47,6 +48,7 @@ class Streamed:
         self._from: Scene | None = None
         self._scene: Scene | None = None
         self._made: dict[Instance, tuple[Gathered, tuple[Instance, ...]]] = {}
+        self._painted: dict[tuple, tuple[Surfels, ...]] = {}
         self._coming: dict[tuple, _Coming] = {}
 
     def resolved(
@@ -75,7 +77,7 @@ class Streamed:
             for stream in streams:
                 stream.begin_frame()
         share = most and most // sum(instance.stream is not None for instance in scene.surfels)
-        until, made, short, unread = perf_counter() + (seconds or 0.0), {}, {}, {}
+        until, made, painted, short, unread = perf_counter() + (seconds or 0.0), {}, {}, {}, {}
         shadows = settings.shadow_resolution > 0 and any(light.casts_shadow for light in scene.lights)
         for instance in scene.surfels:
             if (stream := instance.stream) is None or instance.is_flattened:
@@ -94,14 +96,29 @@ class Streamed:
             short |= {instance.name: None} if seen.is_short else {}
             known = self._made.get(instance)
             is_known = known is not None and known[0] is seen.gathered
-            made[instance] = known if is_known else (seen.gathered, _instances(instance, seen.gathered))
+            parts = self._parts(instance, seen.gathered, painted)
+            made[instance] = known if is_known else (seen.gathered, _instances(instance, seen.gathered, parts))
         self._coming = {key: own for key, own in self._coming.items() if key[1] <= streams.get(key[0], 0)}
         is_same = scene is self._from and all(made[i] is self._made.get(i) for i in made)
-        self._made, self.short, self.unread = made, tuple(short), tuple(unread)
+        self._made, self._painted, self.short, self.unread = made, painted, tuple(short), tuple(unread)
         if not is_same:
             parts = ((instance,) if instance not in made else made[instance][1] for instance in scene.surfels)
             self._from, self._scene = scene, replace(scene, surfels=tuple(part for some in parts for part in some))
         return self._scene
+
+    def _parts(self, instance: Instance, gathered: Gathered, painted: dict) -> tuple[Surfels, ...]:
+        """What was gathered, in the instance's colours; the same objects as in the last view. painted: of this view."""
+        if instance.paint is None:
+            return gathered.parts
+        key = gathered, instance.paint.key
+        if key not in painted:
+            painted[key] = self._painted.get(key) or tuple(_painted(instance.paint, part) for part in gathered.parts)
+        return painted[key]
+
+
+def _painted(paint: Paint, part: Surfels) -> Surfels:
+    made = paint.of(part)
+    return made.as_transparent() if part.is_transparent else made
 
 
 def _seen(asked: Callable[[], Seen]) -> tuple[Seen, str]:
@@ -146,10 +163,10 @@ class _Coming:
                 self._seen = self._seen._replace(is_whole=False) if seen.gathered is None else seen
 
 
-def _instances(instance: Instance, gathered: Gathered) -> tuple[Instance, ...]:
-    """Ordinary instances of surfels that are a cut already."""
-    given = replace(instance, stream=None, is_cut=True)
-    return tuple(replace(given, shape=p, is_merged=k >= gathered.unmerged) for k, p in enumerate(gathered.parts))
+def _instances(instance: Instance, gathered: Gathered, parts: tuple[Surfels, ...]) -> tuple[Instance, ...]:
+    """Ordinary instances of surfels that are a cut already. parts: the gathered ones in the instance's colours."""
+    given = replace(instance, stream=None, paint=None, is_cut=True)
+    return tuple(replace(given, shape=p, is_merged=k >= gathered.unmerged) for k, p in enumerate(parts))
 
 
 def _view(

@@ -3,7 +3,7 @@
 
 from .finish import Finish
 from .material import GlossTexture, Material, NormalTexture, SurfaceTexture
-from .scene import Instance, Placed, PolygonInstance, Scene, placed_at
+from .scene import Instance, Paint, Placed, PolygonInstance, Scene, placed_at
 from .style import LineStyle, Style
 
 __all__ = (
@@ -13,6 +13,7 @@ __all__ = (
     "LineStyle",
     "Material",
     "NormalTexture",
+    "Paint",
     "Placed",
     "PolygonInstance",
     "Scene",

@@ -6,10 +6,10 @@ Plain values without Blender: `blender/export/scene.py` makes a `Scene` from a d
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
-from typing import ClassVar
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
@@ -167,16 +167,25 @@ class Placed:
         return self.is_closed and bool((-self.corners(camera)[:, 2] >= camera.near).all())
 
 
+class Paint(NamedTuple):
+    """Colours in place of those in a file. key: equal where `of` makes the same. of: the surfels in these colours."""
+
+    key: tuple
+    of: Callable[[Surfels], Surfels]
+
+
 @dataclass(frozen=True, eq=False)
 class Instance(Placed):
     """Surfels placed in the world.
 
     stream: the file that finer surfels are read from, as each view needs them; the shape has the coarsest ones.
+    paint: of what is read from that; None for the colours in the file.
     is_cut: whether the shape is what a view draws of that, so that no view merges it further. is_merged: whether all of
         it are merged surfels.
     """
 
     stream: Stream | None = None
+    paint: Paint | None = None
     is_cut: bool = False
     is_merged: bool = False
 

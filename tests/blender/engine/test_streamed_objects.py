@@ -50,6 +50,24 @@ def test_a_moved_object_whose_file_has_an_origin(stored, picture, surfels_of, tm
     assert final_render.last_frame_stats["splats"] == 6400 and np.abs(after - before).max() < 1e-3
 
 
+@pytest.mark.parametrize("ends", [None, (0.2, 0.8)])
+def test_it_is_coloured_by_height_as_in_the_blend(ends, stored, picture):
+    stored.location, stored.rotation_euler.x = (0.1, 0.2, 0.5), 0.4
+    settings = stored.surfel_splatting
+    settings.color_by, settings.color_is_automatic = "HEIGHT", ends is None
+    settings.color_from, settings.color_to = ends or (0, 1)
+    before = picture()
+    bpy.ops.object.surfels_to_file()
+    after = picture()
+    assert final_render.last_frame_stats["splats"] == 6400 and not final_render.last_frame_stats["notes"]
+    assert np.ptp(before[..., :3], axis=2).max() > 0.1
+    assert np.abs(after - before).max() < (1e-3 if ends else 0.1)  # the 49 that are kept give an automatic range
+    settings.color_by = "CLASSIFICATION"
+    picture()
+    (note,) = final_render.last_frame_stats["notes"]
+    assert "its file holds no classification" in note
+
+
 def test_without_its_file_the_coarsest_are_drawn_with_a_warning(stored, picture, tmp_path):
     bpy.ops.object.surfels_to_file()
     (tmp_path / "sheet.surfelblocks").unlink()
