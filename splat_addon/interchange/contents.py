@@ -89,7 +89,8 @@ def point_pieces(
 
 
 def text_columns_of(path: str | os.PathLike) -> tuple[str, ...]:
-    """What the columns of a text file of points are, by its names or a guess; none of another file. Raises OSError."""
+    """What the columns of a text file of points are, by its names or a guess; none of another file. Raises OSError;
+    ValueError if it is empty."""
     head = _head(path)
     others = [*_GAUSSIANS, *(reader for reader in _SCANS.values() if reader is not xyz)]
     is_other = is_ply(head) or any(reader.is_this(head) for reader in others)
@@ -103,7 +104,10 @@ def _check_float_colors(float_colors: str) -> None:
 
 def _head(path: str | os.PathLike) -> bytes:
     with open(path, "rb") as stream:
-        return stream.read(HEAD)
+        head = stream.read(HEAD)
+    if not head:
+        raise ValueError("The file is empty; copy it again.")
+    return head
 
 
 def _reader(head: bytes) -> ModuleType:

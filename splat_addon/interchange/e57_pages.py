@@ -42,7 +42,7 @@ class Pages:
         if not _CHECKSUM < page <= _MOST_PAGE or page % 4 or length > size:
             raise ValueError(
                 f"The E57 header says that {length:,} bytes are in pages of {page:,}, but the file has {size:,}; it is "
-                "cut off or damaged."
+                "cut off or damaged; copy it again."
             )
         self._stream, self._page, self._content = stream, page, page - _CHECKSUM
         #: Bytes without checksums.

@@ -159,5 +159,5 @@ def points_of(pages: Pages, offset: int, count: int, fields: list[Field]) -> Ite
     if left:
         raise ValueError(
             f"The E57 file says that a scan has {count:,} points, but only {count - left + streams.complete(left):,} "
-            "follow; it is cut off or damaged."
+            "follow; it is cut off or damaged; copy it again."
         )

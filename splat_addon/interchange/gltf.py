@@ -96,7 +96,9 @@ class _File:
         view = self.json["bufferViews"][number]
         buffer, start, length = self._buffer(view["buffer"]), view.get("byteOffset", 0), view["byteLength"]
         if not 0 <= start <= start + length <= len(buffer):
-            raise ValueError("A view of the glTF file's buffers is outside its buffer; the file is cut off or damaged.")
+            raise ValueError(
+                "A view of the glTF file's buffers is outside its buffer; it is cut off or damaged; copy it again."
+            )
         return buffer[start : start + length], view.get("byteStride")
 
     def _buffer(self, number: int) -> bytes:
@@ -130,7 +132,9 @@ class _File:
         start, row = index(accessor.get("byteOffset", 0)), kind.itemsize * columns
         stride = index(stride or row)
         if start < 0 or stride < row or (count and start + (count - 1) * stride + row > len(data)):
-            raise ValueError("An accessor of the glTF file is outside its view; the file is cut off or damaged.")
+            raise ValueError(
+                "An accessor of the glTF file is outside its view; the file is cut off or damaged; copy it again."
+            )
         values = np.ndarray((count, columns), kind, data, start, (stride, kind.itemsize)).astype(np.float64)
         return values if kind.kind == "f" else np.maximum(values / np.iinfo(kind).max, -1)
 

@@ -153,7 +153,7 @@ def _reader(stream: BinaryIO, size: int, header: _Header) -> Callable[[range], b
     if header.count * length > size - header.points:
         raise ValueError(
             f"The LAS file says that it has {header.count:,} points of {length} bytes, but only "
-            f"{max(size - header.points, 0):,} bytes are left for them; it is cut off or damaged."
+            f"{max(size - header.points, 0):,} bytes are left for them; it is cut off or damaged; copy it again."
         )
 
     def run(first: int, count: int) -> bytes:

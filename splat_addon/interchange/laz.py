@@ -114,7 +114,9 @@ def _chunk_table(stream: BinaryIO, start: int, size: int) -> int:
         stream.seek(table)
         if int.from_bytes(stream.read(_TABLE_HEAD)[4:], "little") <= table - start:
             return table
-    raise ValueError("The LAZ file's table of chunks is outside the file or larger than it; it is cut off or damaged.")
+    raise ValueError(
+        "The LAZ file's table of chunks is outside the file or larger than it; it is cut off or damaged; copy it again."
+    )
 
 
 def _check_chunks(stream: BinaryIO, start: int, table: int, laszip: bytes, length: int, total: int) -> None:
@@ -157,4 +159,4 @@ def _trusted(call: Callable, where: str = "at its first point"):
         if isinstance(error, (KeyboardInterrupt, SystemExit, MemoryError)):
             raise
         why = " ".join(str(error).split())[:80]
-    raise ValueError(f"The LAZ file cannot be decompressed {where}; it is cut off or damaged ({why}).")
+    raise ValueError(f"The LAZ file cannot be decompressed {where}; it is cut off or damaged ({why}); copy it again.")

@@ -35,5 +35,7 @@ def unpacked(packed: bytes, size: int) -> bytes:
         # what it repeats may be what it makes
         out += (piece * ((length + 2) // len(piece) + 1))[: length + 2]
     if len(out) != size:
-        raise ValueError(f"The compressed points have {len(out):,} of {size:,} bytes; the file is cut off or damaged.")
+        raise ValueError(
+            f"The compressed points have {len(out):,} of {size:,} bytes; the file is cut off or damaged; copy it again."
+        )
     return bytes(out)

@@ -94,7 +94,7 @@ def _binary(stream: BinaryIO, size: int, header: _Header) -> Iterator[np.ndarray
     if header.count * length > size - header.start:
         raise ValueError(
             f"The PCD file says that it has {header.count:,} points of {length} bytes, but only "
-            f"{max(size - header.start, 0):,} bytes are left for them; it is cut off or damaged."
+            f"{max(size - header.start, 0):,} bytes are left for them; it is cut off or damaged; copy it again."
         )
     stream.seek(header.start)
     most = max(1, min(PORTION, PORTION_BYTES // length))
@@ -110,7 +110,7 @@ def _compressed(stream: BinaryIO, size: int, header: _Header) -> Iterator[np.nda
     if packed > left or whole != header.count * header.record.itemsize or whole > packed / LEAST_SHARE:
         raise ValueError(
             f"The PCD file says that {packed:,} bytes hold {header.count:,} points of {header.record.itemsize} bytes, "
-            f"packed to {whole:,}, but {left:,} bytes are left; it is cut off or damaged."
+            f"packed to {whole:,}, but {left:,} bytes are left; it is cut off or damaged; copy it again."
         )
     data, start = unpacked(stream.read(packed), whole), 0
     rows = np.zeros(header.count, header.record)
@@ -155,7 +155,7 @@ def _read_header(head: bytes) -> _Header:
         elif word and not word.startswith("#"):
             raise ValueError(f"The PCD header has a line that no PCD file has, {word[:40]!r}; the file is damaged.")
     if missing := [word for word in ("FIELDS", "SIZE", "TYPE", "DATA") if not given.get(word)]:
-        raise ValueError(f"The PCD header has no line {missing[0]!r}; the file is cut off or damaged.")
+        raise ValueError(f"The PCD header has no line {missing[0]!r}; the file is cut off or damaged; copy it again.")
     if given["DATA"][0] not in _READERS:
         raise ValueError(f"PCD data are one of {', '.join(_READERS)}, not {given['DATA'][0][:40]!r}.")
     sizes = _whole(given.get("WIDTH", [])) + _whole(given.get("HEIGHT", []))

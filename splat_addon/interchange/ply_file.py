@@ -150,7 +150,7 @@ def _read_binary(
     if vertex.count * row.itemsize > available:
         raise ValueError(
             f"The PLY file says that it has {vertex.count:,} points of {row.itemsize} bytes, "
-            f"but only {max(available, 0):,} bytes are left for them; it is cut off or damaged."
+            f"but only {max(available, 0):,} bytes are left for them; it is cut off or damaged; copy it again."
         )
     stream.seek(header.size + skipped)
     for first in range(0, max(vertex.count, 1), most or max(vertex.count, 1)):

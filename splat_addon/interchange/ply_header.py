@@ -123,7 +123,9 @@ def _header_lines(stream: BinaryIO) -> tuple[list[str], bytes]:
         if line.lower() == _END:
             return lines, head[:size]
         lines.append(line)
-    raise ValueError(f"The PLY header does not end with the line '{_END}'; the file is cut off or damaged.")
+    raise ValueError(
+        f"The PLY header does not end with the line '{_END}'; the file is cut off or damaged; copy it again."
+    )
 
 
 def _byte_order(words: list[str]) -> str | None:

@@ -39,7 +39,7 @@ def read_text(stream: BinaryIO, size: int, header: Header, vertex: Element) -> d
     if least > size - header.size:
         raise ValueError(
             f"The PLY file says that it has {vertex.count:,} points of {len(vertex.types)} numbers, "
-            f"but only {size - header.size:,} letters follow; it is cut off or damaged."
+            f"but only {size - header.size:,} letters follow; it is cut off or damaged; copy it again."
         )
     table = _table(stream, header, before, vertex) if vertex.count else np.empty((0, len(vertex.types)))
     return {name: _as_type(column, code) for (name, code), column in zip(vertex.types.items(), table.T, strict=True)}
@@ -83,7 +83,7 @@ def _table_of_numbers(text: TextIO, header: Header, before: int, vertex: Element
     if len(table) < vertex.count * width:
         raise ValueError(
             f"The PLY file says that it has {vertex.count:,} points of {width} numbers, "
-            f"but only {len(table) // width:,} whole ones follow; it is cut off or damaged."
+            f"but only {len(table) // width:,} whole ones follow; it is cut off or damaged; copy it again."
         )
     if odd and (len(table) > vertex.count * width or sum(1 for _ in lines) != _rows_after(header, vertex)):
         number, found = odd[0]

@@ -57,7 +57,7 @@ def _head(lines: Lines) -> tuple[int, np.ndarray] | None:
     if [len(row) for row in rows] != list(_HEAD) or not np.isfinite(np.concatenate(rows)).all():
         raise ValueError(
             f"The scan that begins at line {first:,} of the PTX file lacks its ten lines of sizes, place and matrix; "
-            "the file is cut off or damaged."
+            "the file is cut off or damaged; copy it again."
         )
     columns, grid_rows = rows[0][0], rows[1][0]
     if min(columns, grid_rows) < 0 or columns * grid_rows > 2**62 or columns % 1 or grid_rows % 1:

@@ -101,9 +101,10 @@ def words_of(line: str, separator: str | None) -> list[str]:
 def _numbers(line: str, width: int, separator: str | None, number: int) -> list[float]:
     words = words_of(line, separator)
     if len(words) != width:
+        cure = "correct or delete it" if line.endswith("\n") else "the file ends within it: copy it again"
         raise ValueError(
             f"Line {number:,} of the file has {len(words):,} numbers where others have {width}, {line[:60].strip()!r}; "
-            "correct or delete it."
+            f"{cure}."
         )
     try:
         return [float(word) for word in words]

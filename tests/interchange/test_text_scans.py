@@ -45,7 +45,8 @@ def test_another_count_than_the_file_says_is_told(read):
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
-        ("1 2 3\n4 5\n", "Line 2 of the file has 2 numbers where others have 3, '4 5'"),
+        ("1 2 3\n4 5\n", "Line 2 of the file has 2 numbers where others have 3, '4 5'; correct"),
+        ("1 2 3\n4 5", "'4 5'; the file ends within it: copy it again"),
         ("1 2 3\n4 5 6\nhello you there\n", "Line 3 of the file is not all numbers, 'hello you there'"),
         ("hello\n", "no file of points"),
         ("1 2\n3 4\n", "no file of points"),

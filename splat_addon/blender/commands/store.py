@@ -21,7 +21,7 @@ from ..conversion.points_settings import viewpoint
 from ..geometry.sources import is_surfel_object
 from ..geometry.surfel_files import file_of
 from ..geometry.world_surfels import world_surfels
-from ..operators.file_paths import file_sentence
+from ..operators.file_paths import file_sentence, storing_in
 from .convert import add_density_arguments, batch_of, refuse, refuse_density, sources_of
 from .out_paths import file_at, made_room
 from .points import add_points_arguments, refuse_those_of_files
@@ -71,7 +71,8 @@ def _store_file(options: argparse.Namespace, out: Path) -> tuple[int, list[str]]
     reading = Reading(options.float_colors, text_columns=options.text_columns)
     storing = FileStoring(options.file, options, reading, options.color_by or "COLOR", eye)
     try:
-        return storing.write(out, _printed()), storing.notes
+        with storing_in(out):
+            return storing.write(out, _printed()), storing.notes
     except OSError as error:
         raise ValueError(f"{options.file.name}: {file_sentence(error)}") from error
 

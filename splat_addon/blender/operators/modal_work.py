@@ -15,7 +15,7 @@ from ...sampling import SamplingCancelled
 from ...streaming import WritingCancelled, own_file, write_blocks
 from ...surfels import Surfels
 from ..spoken import said
-from .file_paths import file_sentence
+from .file_paths import file_sentence, storing_in
 from .modal_thread import ModalThread, Work
 
 #: What ends work that was cancelled.
@@ -52,7 +52,7 @@ class Writing:
             told(share)
             return not self.is_cancelled
 
-        with own_file(self.path, self._own) as self.path:
+        with storing_in(self.path), own_file(self.path, self._own) as self.path, storing_in(self.path):
             self._write(progress)
 
     def _write(self, progress: Callable[[float, str], bool]) -> None:

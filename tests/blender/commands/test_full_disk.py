@@ -56,6 +56,14 @@ def test_converted_points(animation, surfels_command, fails, tmp_path):
     fails(tmp_path / "out.blend", *arguments, "--again")
 
 
+def test_a_scan_that_is_stored(animation, surfels_command, fails, tmp_path):
+    scan, out = tmp_path / "scan.xyz", tmp_path / "out.surfelblocks"
+    scan.write_text("".join(f"{x / 10} {y / 10} 2\n" for x in range(20) for y in range(20)))
+    arguments = ("store", "--file", scan, "--out", out)
+    assert surfels_command(*arguments)[0] == 0
+    fails(out, *arguments, "--again")
+
+
 def test_merged_blocks(animation, surfels_command, fails, tmp_path):
     out = tmp_path / "out.blend"
     blocks = ("--out", out, "--blocks", 2)
