@@ -116,7 +116,7 @@ MAY_IMPORT = {
 }
 #: `reference` reads rendering's data, never its passes.
 RENDERING_DATA = {"scene", "shadows.maps", "settings", "frame", "view", "depth_range", "methods", "shading_models"}
-RENDERING_DATA |= {"upload.atlas", "bounced.light", "bounced.surfaces"}
+RENDERING_DATA |= {"upload.atlas", "bounced.light", "bounced.sides"}
 #: A plan asks the features, whose passes it consists of.
 PLAN_AND_FEATURES = {"plan", "passes", "features", "identity", "read_back"}
 #: The rooms of `rendering` from the bottom up. Imports go down; only within `PLAN_AND_FEATURES` they go sideways.

@@ -6,7 +6,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..rendering.bounced.light import BouncedLight
-from ..rendering.bounced.surfaces import SIDES
+from ..rendering.bounced.sides import SIDES
 
 #: What a side counts for at least.
 LEAST = 1e-4

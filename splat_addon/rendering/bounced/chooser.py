@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .surfaces import SIDES, side_of
+from .sides import SIDES, side_of
 
 
 class Chooser:

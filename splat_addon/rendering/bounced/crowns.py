@@ -19,9 +19,10 @@ from ...surfels import Surfels
 from ...vectors import unit
 from ..scene import Scene
 from ..scene.scene import Placed
+from .appearance import are_opaque
 from .light import BouncedLight
-from .points import are_opaque, places_in
-from .surfaces import SIDES
+from .places import places_in
+from .sides import SIDES
 
 #: Cells of a shape, and of the world, about.
 _OF_SHAPE, _OF_WORLD = 1 << 12, 1 << 17

@@ -13,13 +13,11 @@ import numpy as np
 
 from ...vectors import unit
 from .points import Points, joined, with_backs
+from .sides import SIDES, facing_sides, side_of
 from .voxels import Voxels, make_voxels
 
-SIDES = 6
 #: Cubes along the side of a cell: as few as keep the merged surfels below their number.
 _CELLS = (3, 4, 6, 8, 12, 16, 24, 32)
-
-
 #: How many of a merged surfel's points may be its middle one.
 _CANDIDATES = 6
 #: Between which of two merged surfels' points, by their share of all, and how much farther above surfaces, in cubes, it
@@ -112,20 +110,6 @@ class Surfaces:
 def cells_of(shape: tuple[int, ...], cell: int) -> tuple[int, ...]:
     """The number of cells along each axis of a grid of cubes."""
     return tuple(-(-n // cell) for n in shape)
-
-
-def side_of(vectors: np.ndarray) -> np.ndarray:
-    """(n,) uint8 sides that (n, 3) vectors are nearest to: 2 for each axis, the first towards its positive end."""
-    x, y, z = np.abs(vectors.T)
-    is_x, is_y = (x >= y) & (x >= z), y >= z
-    largest = np.where(is_x, np.uint8(0), np.where(is_y, np.uint8(1), np.uint8(2)))
-    is_negative = vectors.T < 0
-    return 2 * largest + np.where(is_x, is_negative[0], np.where(is_y, is_negative[1], is_negative[2]))
-
-
-def facing_sides(directions: np.ndarray) -> np.ndarray:
-    """(n, 3) for each axis the side that looks against (n, 3) directions."""
-    return 2 * np.arange(3) + (directions > 0)
 
 
 def make_surfaces(

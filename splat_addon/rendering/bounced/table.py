@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..scene.light import MAX_IRRADIANCE
-from .surfaces import SIDES
+from .sides import SIDES
 
 #: Texels in a row of the texture.
 PER_ROW = 1024
