@@ -115,7 +115,7 @@ MAY_IMPORT = {
     },
 }
 #: `reference` reads rendering's data, never its passes.
-RENDERING_DATA = {"scene", "shadows.maps", "settings", "frame", "view", "depth_range", "methods", "shading_models"}
+RENDERING_DATA = {"scene", "settings", "frame", "view", "depth_range", "methods", "shading_models"}
 RENDERING_DATA |= {"upload.atlas", "bounced.light", "bounced.sides"}
 #: A plan asks the features, whose passes it consists of.
 PLAN_AND_FEATURES = {"plan", "passes", "features", "identity", "read_back"}

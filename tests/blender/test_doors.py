@@ -13,7 +13,7 @@ from splat_addon import faults
 from splat_addon.blender import commands, doors
 from splat_addon.blender.conversion import bring_back, mesh_conversion
 from splat_addon.blender.engine import final_render
-from splat_addon.blender.export import live_meshes, scene, world
+from splat_addon.blender.export import lights, live_meshes, mesh_reading, traits, world
 from splat_addon.blender.operators import surfels_from_mesh
 from splat_addon.blender.ui.world_panels import WORLD_PT_surfel_sun
 from splat_addon.rendering import Camera, Light
@@ -160,10 +160,10 @@ def rendered(cube, camera, capfd):
 @pytest.mark.parametrize(
     ("module", "name", "what"),
     [
-        (live_meshes, "read_mesh", "Cube"),
+        (mesh_reading, "read_mesh", "Cube"),
         (live_meshes, "mesh_polygons", "Cube"),
-        (scene, "may_change", "Cube"),
-        (scene, "light_of", "Sun"),
+        (traits, "may_change", "Cube"),
+        (lights, "light_of", "Sun"),
         (world, "backgrounds", "The world 'World'"),
     ],
 )

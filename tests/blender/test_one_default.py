@@ -13,7 +13,7 @@ from splat_addon.blender.conversion.batch import ConversionBatch
 from splat_addon.blender.conversion.mesh_settings import choices
 from splat_addon.blender.conversion.points_settings import PointsProperties, keywords
 from splat_addon.blender.conversion.source_record import SurfelPointsSettings
-from splat_addon.blender.export import live_meshes
+from splat_addon.blender.export import live_sampling
 from splat_addon.blender.ids import CONVERSION_SETTINGS
 from splat_addon.blender.meshes.mesh_extraction import read_mesh
 from splat_addon.sampling import PLAIN, sample_mesh, surfels_from_points
@@ -68,7 +68,7 @@ def test_the_librarys_defaults_are_those_of_conversions(door, shape, mesh, surfe
 
 @pytest.mark.parametrize("looks", ({}, {"normal_fields": True}))
 def test_meshes_that_are_rendered_as_surfels_differ_by_their_equal_sizes_alone(looks, mesh):
-    live = live_meshes._deforming(mesh, SPACING, looks, True, False).at(mesh)[0]
+    live = live_sampling.deforming_surfels(mesh, SPACING, looks, True, False).at(mesh)[0]
     held(live, sample_mesh(mesh, spacing=SPACING, tolerance=None, **looks))
 
 

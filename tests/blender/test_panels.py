@@ -55,7 +55,7 @@ READERS = {
         "properties",
         "render_settings/samples",
     ),
-    "object": ("export/scene", "export/live_meshes"),
+    "object": ("export/entry_kinds", "export/surfel_instances", "export/traits", "export/mesh_reading"),
     "material": ("export/shading", "materials/material_surfaces"),
     "world": ("export/world", "export/world_shaders"),
 }

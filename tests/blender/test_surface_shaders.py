@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 import pytest
 
-from splat_addon.blender.export.scene import Notes
+from splat_addon.blender.export.notes import Notes
 from splat_addon.blender.export.shading import shading_material
 from splat_addon.blender.materials.graphs.channels import mix_factor
 from splat_addon.blender.materials.material_surfaces import MeshLayers, material_surface

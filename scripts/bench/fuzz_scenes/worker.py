@@ -30,7 +30,8 @@ from splat_addon.blender.cameras import final_camera
 from splat_addon.blender.engine import final_render
 from splat_addon.blender.engine.render_passes import outputs_of
 from splat_addon.blender.export.live_meshes import LiveMeshes
-from splat_addon.blender.export.scene import SurfelStore, export_scene
+from splat_addon.blender.export.scene import export_scene
+from splat_addon.blender.export.surfel_store import SurfelStore
 from splat_addon.blender.properties import final_settings, viewport_settings
 from splat_addon.faults import is_worded, sentence_of
 from splat_addon.rendering import Camera, plan

@@ -21,7 +21,8 @@ from ..doors import unattended, with_handlers
 from ..export.changes import Changes, changes_of
 from ..export.live_meshes import LiveMeshes
 from ..export.notes import Notes
-from ..export.scene import SurfelStore, export_scene
+from ..export.scene import export_scene
+from ..export.surfel_store import SurfelStore
 from ..ids import RENDER_SETTINGS
 from ..materials import matcap_images
 from ..preferences import most_bytes

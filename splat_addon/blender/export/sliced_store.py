@@ -35,7 +35,7 @@ from ..geometry.attributes import (
     stored_fields,
     stored_of,
 )
-from .scene import Kept, SurfelStore, tell_replaced
+from .surfel_store import Kept, SurfelStore, tell_replaced
 
 #: Surfels that one picture may read at once, so that small meshes are there in the first one.
 AT_ONCE = 1 << 18
@@ -90,7 +90,7 @@ class SlicedStore(SurfelStore):
         super().forget_unused()
         self._kept |= before
 
-    def get(self, points: Points, key: int, name: str, offset: np.ndarray, is_solid: bool = False):
+    def get(self, points: Points, key: int, name: str, offset: np.ndarray, is_solid: bool = False) -> Stored:
         """The result of `SurfelStore.get`, or what is known meanwhile, which may be nothing."""
         self._requested.add(key)
         count = count_of(points)
@@ -109,7 +109,7 @@ class SlicedStore(SurfelStore):
             del self._readings[key]
             raise
         if read is None:
-            return reading.meanwhile, 0, 0
+            return Stored(reading.meanwhile, skipped=0, strayed=0)
         del self._readings[key]
         if read.followed is not None:
             self._followed[name] = read.followed

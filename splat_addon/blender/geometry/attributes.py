@@ -136,11 +136,12 @@ def read_surfels(mesh: Points, offset: np.ndarray | None = None) -> tuple[Surfel
 
 
 class Stored(NamedTuple):
-    """skipped: number of unusable points, which were left out.
+    """surfels: None until a view that reads them slowly has any.
+    skipped: number of unusable points, which were left out.
     strayed: number of surfels that were moved individually, so that their frames are unknown.
     """
 
-    surfels: Surfels
+    surfels: Surfels | None
     skipped: int
     strayed: int
 

@@ -14,8 +14,9 @@ from ..plan.hosts import BLENDED, LIT_HOSTS, SPLAT_HOSTS, Host, Kind
 from ..plan.repeats import Repeats
 from ..scene.camera import Camera
 from ..scene.light import pack_lights
+from ..shadows.atlas import atlas_size, map_ranges, pack_shadow_maps
 from ..shadows.contents import contents
-from ..shadows.maps import MAX_MAPS, atlas_size, map_ranges, pack_shadow_maps
+from ..shadows.maps import MAX_MAPS
 from ..shadows.receivers import NEAREST_SHARE
 from ..view import View
 from . import hidden_objects, visibility

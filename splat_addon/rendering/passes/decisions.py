@@ -17,7 +17,7 @@ from ..plan.graph import Pass, Texture
 from ..plan.hosts import BLENDED, LIT_HOSTS, SPLAT_HOSTS, Kind
 from ..plan.planning import Planning, any_of, count
 from ..shading_models import ShadingModel, get_shading_model
-from ..shadows.maps import ShadowMap
+from ..shadows.atlas import ShadowMap
 from ..shadows.maps import shadow_maps as maps_for
 from .textures import IDENTITY, POLYGON_IDENTITY, ROW_DEPTH, ROW_IDENTITY, VISIBILITY_DEPTH, rows_of
 

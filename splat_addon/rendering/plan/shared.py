@@ -22,7 +22,7 @@ from ..scene import Instance, Scene
 from ..scene.camera import Camera
 from ..scene.glass_surfaces import GlassSurfaces
 from ..settings import Settings
-from ..shadows.maps import ShadowMap
+from ..shadows.atlas import ShadowMap
 from ..view import View, build_view
 from .frame_plan import FramePlan
 from .graph import Pass

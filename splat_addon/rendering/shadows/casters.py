@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..depth_range import are_outside
+from ..scene.camera import Camera
 from ..scene.light import Light
 from ..scene.table import corners_times
 from .hexahedra import EDGES, face_planes, planes
@@ -48,3 +50,8 @@ def hull_planes(space: np.ndarray, lamp: np.ndarray) -> np.ndarray:
     start, end, _, _ = EDGES[is_kept[EDGES[:, 2]] != is_kept[EDGES[:, 3]]].T
     normals = np.cross(space[end] - space[start], lamp[:3] - lamp[3] * space[start])
     return np.concatenate([faces[is_kept], planes(normals, space[start], space.mean(axis=0))])
+
+
+def sees(camera: Camera, corners: np.ndarray) -> np.ndarray:
+    """(n,) whether the boxes with these (n, 8, 3) world corners may be in the camera's picture."""
+    return ~are_outside(corners_times(corners - camera.matrix_world[:3, 3], camera.matrix_world[:3, :3]), camera)

@@ -16,7 +16,7 @@ from ...hierarchy import Hierarchy
 from ..scene import Instance, Placed, PolygonInstance
 from ..scene.camera import Camera
 from ..scene.table import InstanceTable
-from .maps import ShadowMap
+from .atlas import ShadowMap
 
 #: Fields that are compared in another way, or change nothing in a map.
 _APART = {

@@ -10,7 +10,7 @@ import pytest
 from splat_addon.blender.engine import viewport
 from splat_addon.blender.export.changes import changes_of
 from splat_addon.blender.export.notes import Notes
-from splat_addon.blender.export.scene import SurfelStore
+from splat_addon.blender.export.surfel_store import SurfelStore
 
 
 @pytest.fixture

@@ -5,8 +5,10 @@ import bpy
 import numpy as np
 import pytest
 
-from splat_addon.blender.export import scene as export
+from splat_addon.blender.export import traits
 from splat_addon.blender.export.live_meshes import LiveMeshes
+from splat_addon.blender.export.scene import export_scene
+from splat_addon.blender.export.surfel_store import SurfelStore
 
 
 @pytest.fixture
@@ -171,9 +173,9 @@ def test_what_instances_share_is_found_once(scene, motif, add_mesh, add_nodes, m
     for source in (motif, triangle):
         add_nodes(add_mesh(f"points of {source.name}", corners.tolist(), []), instances_of(source, scale=(2, 1, 1)))
         source.hide_render = source.hide_viewport = True
-    asked, may_change = [], export.may_change
-    monkeypatch.setattr(export, "may_change", lambda entry: asked.append(entry.object.name) or may_change(entry))
-    found, _ = export.export_scene(bpy.context.evaluated_depsgraph_get(), export.SurfelStore(), LiveMeshes())
+    asked, may_change = [], traits.may_change
+    monkeypatch.setattr(traits, "may_change", lambda entry: asked.append(entry.object.name) or may_change(entry))
+    found, _ = export_scene(bpy.context.evaluated_depsgraph_get(), SurfelStore(), LiveMeshes())
     for placed, source in ((found.surfels, motif), (found.polygons, triangle)):
         assert {each.name for each in placed} == {source.name}
         assert np.array_equal([each.matrix_world[:3, 3] for each in placed], corners)
@@ -196,6 +198,6 @@ def test_meshes_of_one_instancer_are_told_apart(scene, add_mesh, add_nodes):
         tree.links.new(joined.outputs[0], end)
 
     add_nodes(add_mesh("points", [(0, 0, 0), (5, 0, 0)], []), build)
-    found, _ = export.export_scene(bpy.context.evaluated_depsgraph_get(), export.SurfelStore(), LiveMeshes())
+    found, _ = export_scene(bpy.context.evaluated_depsgraph_get(), SurfelStore(), LiveMeshes())
     seen = sorted((float(each.shape.positions.max()), each.matrix_world[0, 3]) for each in found.polygons)
     assert seen == [(size / 2, x) for size in (1, 2, 3) for x in (0, 5)]

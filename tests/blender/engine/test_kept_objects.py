@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 
 from splat_addon.blender.engine import final_render
-from splat_addon.blender.export import scene as export
+from splat_addon.blender.export import surfel_store
 from splat_addon.blender.export.changes import Changes, changes_of
 from splat_addon.blender.export.live_meshes import LiveMeshes
-from splat_addon.blender.export.scene import SurfelStore, export_scene
+from splat_addon.blender.export.scene import export_scene
+from splat_addon.blender.export.surfel_store import SurfelStore
 
 FRAMES = 3
 
@@ -222,8 +223,8 @@ def test_surfels_that_stay_as_they_are_are_read_once_for_an_animation(
         edited.data.attributes["Col"].data[0].color = (0, scene.frame_current / FRAMES, 0, 1)
         edited.data.update()
 
-    read, names = export.read_stored, []
-    monkeypatch.setattr(export, "read_stored", lambda *given: names.append(given[2]) or read(*given))
+    read, names = surfel_store.read_stored, []
+    monkeypatch.setattr(surfel_store, "read_stored", lambda *given: names.append(given[2]) or read(*given))
     scene.frame_start, scene.frame_end = 1, FRAMES
     bpy.app.handlers.frame_change_post.append(edit)
     try:

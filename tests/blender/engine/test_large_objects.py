@@ -5,8 +5,9 @@ import bpy
 import numpy as np
 import pytest
 
-from splat_addon.blender.export import scene
 from splat_addon.blender.export.live_meshes import LiveMeshes
+from splat_addon.blender.export.scene import export_scene
+from splat_addon.blender.export.surfel_store import SurfelStore
 from splat_addon.rendering.upload import parts
 from splat_addon.surfels import portions
 
@@ -26,9 +27,9 @@ def sheet(add_camera, add_surfels):
 
 def exported() -> list:
     """The sets of surfels that a render gets."""
-    store = scene.SurfelStore()
+    store = SurfelStore()
     store.begin_frame()
-    found, _ = scene.export_scene(bpy.context.evaluated_depsgraph_get(), store, LiveMeshes())
+    found, _ = export_scene(bpy.context.evaluated_depsgraph_get(), store, LiveMeshes())
     return [instance.surfels for instance in found.surfels]
 
 

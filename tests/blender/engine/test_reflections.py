@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from splat_addon.blender.export.live_meshes import LiveMeshes
-from splat_addon.blender.export.scene import SurfelStore, export_scene
+from splat_addon.blender.export.scene import export_scene
+from splat_addon.blender.export.surfel_store import SurfelStore
 
 RED = (1.0, 0.05, 0.05)
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from splat_addon.blender.export.live_meshes import LiveMeshes
-from splat_addon.blender.export.scene import SurfelStore, export_scene
+from splat_addon.blender.export.scene import export_scene
+from splat_addon.blender.export.surfel_store import SurfelStore
 from splat_addon.interchange.scan_colors import GREYS, RAMP, of_classes, on_ramp
 
 RED = (1.0, 0.0, 0.0, 0.5)

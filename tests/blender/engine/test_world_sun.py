@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from splat_addon.blender.export.notes import Notes
-from splat_addon.blender.export.scene import SurfelStore
+from splat_addon.blender.export.surfel_store import SurfelStore
 from splat_addon.rendering import Scene
 
 

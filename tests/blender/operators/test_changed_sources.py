@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from splat_addon.blender.export.live_meshes import LiveMeshes
-from splat_addon.blender.export.scene import SurfelStore, export_scene
+from splat_addon.blender.export.scene import export_scene
+from splat_addon.blender.export.surfel_store import SurfelStore
 
 QUADS = [(0, 1, 4, 3), (1, 2, 5, 4)]
 CORNERS = [(x, y, 0) for y in (0, 1) for x in (0, 1, 2)]
@@ -248,7 +249,7 @@ def test_faces_that_end_at_other_corners_are_drawn_anew(form, add_mesh):
         live.begin_frame()
         scene, _ = export_scene(bpy.context.evaluated_depsgraph_get(), SurfelStore(), live)
         (kept,) = live._kept.values()
-        a, b, c = np.moveaxis(kept.content.triangles.positions[kept.content.triangles.triangles], 1, 0)
+        a, b, c = np.moveaxis(kept.read.content.triangles.positions[kept.read.content.triangles.triangles], 1, 0)
         assert len(scene.surfels) + len(scene.polygons) == 1
         return np.linalg.norm(np.cross(b - a, c - a), axis=1).sum() / 2
 

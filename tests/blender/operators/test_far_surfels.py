@@ -9,7 +9,8 @@ import pytest
 from mathutils import Matrix
 
 from splat_addon.blender.export.live_meshes import LiveMeshes
-from splat_addon.blender.export.scene import SurfelStore, export_scene
+from splat_addon.blender.export.scene import export_scene
+from splat_addon.blender.export.surfel_store import SurfelStore
 from splat_addon.blender.geometry.scene_offset import scene_offset
 from splat_addon.interchange import read_contents, read_ply, write_ply
 from splat_addon.surfels import Surfels
