@@ -28,8 +28,9 @@ class Cells:
 
     order: (N,) int32 points, cell by cell; a *place* is an index into it. unit: the largest power of two that is not
         above the size, so that coordinates in it keep every bit. size: of a cell, in units. columns: (3, N + 1) by
-        place, in units, with a final infinite one at place N, which stands for "no point". queries: (Q,) the queried
-        points, ascending; cell_of_query, place_of_query: (Q,); is_far: (Q,) whether it lies in the last cells.
+        place, in units, with a final infinite one at place N, which stands for "no point". first: (C + 1,) first place
+        of each cell, and N. place_of_point: (N,). queries: (Q,) the queried points, ascending; cell_of_query,
+        place_of_query: (Q,); is_far: (Q,) whether it lies in the last cells, as far_points do.
     """
 
     def __init__(self, positions: np.ndarray, size: float, queries: np.ndarray):
@@ -39,18 +40,19 @@ class Cells:
         keys, self._strides = _cell_keys(scaled)
         self.order = np.argsort(keys, kind="stable").astype(np.int32)
         keys = keys[self.order]
-        self._first = np.flatnonzero(np.diff(keys, prepend=-1))
-        self._keys = keys[self._first]
-        self._first = np.append(self._first, len(keys))
+        self.first = np.flatnonzero(np.diff(keys, prepend=-1))
+        self._keys = keys[self.first]
+        self.first = np.append(self.first, len(keys))
         self.columns = np.full((3, len(keys) + 1), np.inf)
         np.divide(positions[self.order].T, self.unit, out=self.columns[:, :-1])
         self.queries = queries
-        self.is_far = _beyond_last(scaled)[queries]
+        is_far = _beyond_last(scaled)
+        self.is_far, self.far_points = is_far[queries], np.flatnonzero(is_far)
         self._scaled_queries = [column[queries] for column in scaled]
-        place_of_point = np.empty(len(keys), np.int32)
-        place_of_point[self.order] = np.arange(len(keys), dtype=np.int32)
-        self.place_of_query = place_of_point[queries]
-        cell_of_place = np.repeat(np.arange(len(self._keys)), np.diff(self._first))
+        self.place_of_point = np.empty(len(keys), np.int32)
+        self.place_of_point[self.order] = np.arange(len(keys), dtype=np.int32)
+        self.place_of_query = self.place_of_point[queries]
+        cell_of_place = np.repeat(np.arange(len(self._keys)), np.diff(self.first))
         self._cells, self.cell_of_query = np.unique(cell_of_place[self.place_of_query], return_inverse=True)
         self._starts, self._counts = self._rows_of_blocks()
 
@@ -83,8 +85,8 @@ class Cells:
         starts, counts = np.empty(shape, np.int64), np.empty(shape, np.int64)
         steps = [dx * self._strides[0] + dy * self._strides[1] for dx in (-1, 0, 1) for dy in (-1, 0, 1)]
         for row, step in enumerate(steps):
-            starts[:, row] = self._first[np.searchsorted(self._keys, keys + (step - 1))]
-            counts[:, row] = self._first[np.searchsorted(self._keys, keys + (step + 1), "right")] - starts[:, row]
+            starts[:, row] = self.first[np.searchsorted(self._keys, keys + (step - 1))]
+            counts[:, row] = self.first[np.searchsorted(self._keys, keys + (step + 1), "right")] - starts[:, row]
         return starts, counts
 
 
