@@ -20,9 +20,9 @@ _CHUNK = 1 << 16
 
 
 def strayness(positions: np.ndarray, radii: np.ndarray, normals: np.ndarray) -> np.ndarray:
-    """(N,) float64 that grows with how stray each surfel is, 1 where it is far from its neighbours, while these are
-    close to others, far from them beside the median of all, off the planes in which they lie, or much larger than they
-    are.
+    """(N,) float64 that grows with how stray each surfel is: 0 where it is like its neighbours, 1 where it is far from
+    them, while these are close to others, far from them beside the median of all, off the planes in which they lie, or
+    much larger than they are.
 
     positions: (N, 3) finite. radii: (N,) the larger half-axes. normals: (N, 3). Of several in one place the first is
     looked at, and the others have 0; so have all if there are too few to compare.
@@ -37,13 +37,18 @@ def strayness(positions: np.ndarray, radii: np.ndarray, normals: np.ndarray) -> 
     neighbours, distances = nearest_neighbours(places, _NEIGHBOURS)
     mean, off = distances.mean(axis=1, dtype=np.float64), _off_planes(places, np.asarray(normals)[first], neighbours)
     with np.errstate(divide="ignore", invalid="ignore"):
-        from_others = mean / _around(mean, neighbours) / ISOLATED_RATIO
-        from_all = mean / np.median(mean) / ISOLATED_FROM_ALL_RATIO
-        from_surface = np.minimum(off / _around(off, neighbours) / _OFF_OTHERS, off / mean / _OFF_SPACING)
-        too_large = size / _around(size, neighbours) / _TOO_LARGE
+        from_others = _share(mean / _around(mean, neighbours), ISOLATED_RATIO)
+        from_all = _share(mean / np.median(mean), ISOLATED_FROM_ALL_RATIO)
+        from_surface = np.minimum(_share(off / _around(off, neighbours), _OFF_OTHERS), off / mean / _OFF_SPACING)
+        too_large = _share(size / _around(size, neighbours), _TOO_LARGE)
     found = np.nan_to_num([from_others, from_all, from_surface, too_large], nan=0.0)
-    made[first] = found.max(axis=0)
+    made[first] = np.maximum(found.max(axis=0), 0)
     return made
+
+
+def _share(ratios: np.ndarray, most: float) -> np.ndarray:
+    """Of the way from what is usual, a ratio of 1, to `most`."""
+    return (ratios - 1) / (most - 1)
 
 
 def _around(values: np.ndarray, neighbours: np.ndarray) -> np.ndarray:

@@ -31,7 +31,13 @@ def test_discs_that_are_too_large_are_strays():
     radii = np.ones(900)
     radii[450] = 6.0
     found = found_in(sheet(), radii)
-    assert np.flatnonzero(found > 1).tolist() == [450] and found[450] == pytest.approx(6 / 5)
+    assert np.flatnonzero(found > 1).tolist() == [450] and found[450] == pytest.approx((6 - 1) / (5 - 1))
+
+
+def test_a_high_strength_does_not_select_what_is_like_its_neighbours():
+    """The operator selects what is above 1 / strength."""
+    found = found_in(np.concatenate([sheet(), [(15.5, 15.5, 1.0)]]))
+    assert found[900] > 1 and (found[:900] > 1 / 5).mean() < 0.1 and np.median(found[:900]) < 0.02
 
 
 def test_points_just_off_a_noisy_surface_are_strays():
