@@ -27,9 +27,9 @@ from .mesh.triangle_mesh import TriangleMesh
 from .options import DEFAULT_SPLAT_SIZE, FLAT, PLAIN, SamplingOptions
 from .points import PointsReport, surfels_from_points
 from .progress import SamplingCancelled
-from .refine.adaptive import Tolerance
 from .refine.flat_extents import NO_FLAT_EXTENTS, UNKNOWN_FLAT_EXTENTS, FlatExtents, flat_extents
 from .refine.flat_faces import is_plain
+from .refine.tolerance import Tolerance
 from .sample import Sampling, sample_mesh, sample_surface
 
 __all__ = [

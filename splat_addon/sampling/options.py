@@ -11,7 +11,7 @@ from types import MappingProxyType
 from ..large_surfels import SAMPLE_SIZE
 from .edges.borders import DEFAULT_CREASE_ANGLE
 from .ldc.reductions import DEFAULT_GRAZING_ANGLE, check_grazing_angle, find_reduction
-from .refine.adaptive import Tolerance
+from .refine.tolerance import Tolerance
 
 #: Half-axis of a splat in H.
 DEFAULT_SPLAT_SIZE = SAMPLE_SIZE

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from splat_addon.rendering.scene.scene import Instance, Scene
+from splat_addon.rendering.scene import Instance, Scene
 
 #: Botsch and Kobbelt 2003, equation 1: a sprite's side, and not half of it, is the projected radius.
 HALVED = {"sprites_printed"}

@@ -10,12 +10,12 @@ import pytest
 from splat_addon.reference import render_exact
 from splat_addon.reference.extremes import discs
 from splat_addon.rendering import Camera, Environment, Renderer, Scene, Settings, plan
+from splat_addon.rendering.scene import Instance
 from splat_addon.rendering.scene import environment as module
 from splat_addon.rendering.scene.environment import level_directions
 from splat_addon.rendering.scene.equirectangular import equirectangular_directions
 from splat_addon.rendering.scene.material import Material
 from splat_addon.rendering.scene.picture_sun import excess_of
-from splat_addon.rendering.scene.scene import Instance
 from splat_addon.rendering.scene.sun_apart import sun_apart
 
 ROWS = 512

@@ -9,7 +9,7 @@ import pytest
 from splat_addon.sampling import Channel, Image, NormalMap, Surface, Texture, TriangleMesh, VertexColors, sample_surface
 from splat_addon.sampling.attributes.repainting import Repainting, places_in_triangles
 from splat_addon.sampling.mesh.barycentric import barycentric
-from splat_addon.sampling.refine.adaptive import Tolerance
+from splat_addon.sampling.refine.tolerance import Tolerance
 from splat_addon.surfels import field_values
 
 SPACING = 0.05

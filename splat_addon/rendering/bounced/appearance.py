@@ -8,8 +8,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from ...images import Image
+from ..scene import Placed
 from ..scene.material import SurfaceTexture
-from ..scene.scene import Placed
 from .places import Places
 
 #: What is less opaque than this lets all light through.

@@ -17,8 +17,7 @@ from ...hierarchy.nodes import MERGED_OVERLAP
 from ...large_surfels import SAMPLE_SIZE
 from ...surfels import Surfels
 from ...vectors import unit
-from ..scene import Scene
-from ..scene.scene import Placed
+from ..scene import Placed, Scene
 from .appearance import are_opaque
 from .light import BouncedLight
 from .places import places_in

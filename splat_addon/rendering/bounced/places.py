@@ -11,8 +11,8 @@ from ...clip_lines import kept
 from ...quaternions import axes_columns
 from ...surfels import Surfels
 from ...vectors import unit
+from ..scene import Placed
 from ..scene.polygons import Polygons
-from ..scene.scene import Placed
 
 #: Distance of points on large surfels and triangles; the most of a surfel's radius that one point stands for; both in
 #: cubes.

@@ -9,8 +9,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 
 from ...vectors import unit
-from ..scene import Scene
-from ..scene.scene import Placed
+from ..scene import Placed, Scene
 from .appearance import appearance_of, are_opaque
 from .chooser import Chooser
 from .places import Places, places_in, thinned

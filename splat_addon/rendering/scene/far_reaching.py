@@ -13,8 +13,8 @@ import numpy as np
 
 from .camera import Camera
 from .convex import divided, fans, kept
+from .placed import PolygonInstance
 from .polygons import Polygons
-from .scene import PolygonInstance
 from .table import CORNERS
 
 #: A triangle is cut if it is longer than this many times its distance from the eye, or in a parallel view the longest

@@ -13,7 +13,7 @@ import numpy as np
 from ...quaternions import quaternion_axes
 from ...surfels import Surfels
 from .material import reflectance
-from .scene import Placed
+from .placed import Placed
 
 #: Triangles or discs in a leaf.
 LEAF = 4

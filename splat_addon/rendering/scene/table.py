@@ -21,7 +21,7 @@ Found = TypeVar("Found")
 
 if TYPE_CHECKING:
     from .camera import Camera
-    from .scene import Placed
+    from .placed import Placed
 
 #: A matrix whose shortest axis is below this share of its longest leaves no direction for a normal.
 FLATTEST = 1e-12
