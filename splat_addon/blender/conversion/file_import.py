@@ -29,6 +29,9 @@ from .surfel_objects import active_collection, add_surfel_object
 #: Share of the time that reading takes; the rest is for normals and radii.
 _READING = 0.2
 
+#: Steps of Blender's numbers that are coarse, in half-axes of the median surfel.
+_COARSE = 0.1
+
 
 class Reading(NamedTuple):
     """How files are read. most_points: to take of a scan that has more; 0: all. text_columns: names of those of a text,
@@ -117,6 +120,7 @@ class FileImport:
         surfels = self._in_scene(context.scene)
         made = add_surfel_object(Path(self.name).stem, surfels, Matrix(), [active_collection(context)])
         self._write_attributes(made.data, surfels.origin)
+        self.notes += doubts_of_place(made, surfels.scales)
         return made
 
     def refill(self, mesh: bpy.types.Mesh, scene: bpy.types.Scene, origin: np.ndarray) -> None:
@@ -163,18 +167,37 @@ class FileImport:
         return f"{self.name}: " + said("The import was cancelled; nothing was changed")
 
 
+def doubts_of_place(made: bpy.types.Object, scales: np.ndarray) -> list[str]:
+    """Sentences about a place so far out that Blender's own numbers are coarse beside the surfels. scales: theirs."""
+    step = float(np.spacing(np.abs(np.array(made.matrix_world.translation, np.float32)).max()))
+    if not step > _COARSE * float(np.median(scales)):
+        return []
+    why = said(
+        "Blender keeps places so far out in steps of {step:.3g}, also those of cameras and lights; this engine draws "
+        "and exports the surfels exactly",
+        step=step,
+    )
+    aside = float(np.linalg.norm(offset_of(made.data)))
+    return [why, said("Other engines show these surfels {aside:.2g} aside", aside=aside)] if aside else [why]
+
+
 def show_scan(
     context: bpy.types.Context, made: bpy.types.Object, positions: np.ndarray, scanner: np.ndarray | None = None
 ) -> list[str]:
     """Give a scene the look of scans if `made` is its first, and a camera if it has none, or none that sees its first;
-    returns sentences about it.
+    returns sentences about it, and about a later scan that the camera does not see.
     positions, scanner: as of `add_camera`."""
     is_first = not any(is_surfel_object(each) for each in context.scene.objects if each != made)
     notes = [give_scan_look(context.scene)] if is_first else []
     widen_views(context, made, positions)
     camera = context.scene.camera
-    if camera is None or (is_first and not sees(context, camera, made, positions)):
+    if camera is not None and sees(context, camera, made, positions):
+        return notes
+    if camera is None or is_first:
         add_camera(context, made, positions, scanner)
         if camera is not None:
             notes.append(f"Took a new camera, because {camera.name!r} sees nothing of the scan")
+    else:
+        away = (camera.matrix_world.translation - made.matrix_world.translation).length
+        notes.append(f"The camera {camera.name!r} sees nothing of the scan, which is {away:,.0f} units from it")
     return notes

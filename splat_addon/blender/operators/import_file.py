@@ -18,7 +18,7 @@ from mathutils import Matrix
 from ...interchange import SHARED_SUFFIXES, SUFFIXES, numbered_files, text_columns_of
 from ...streaming import id_of
 from ...streaming.layout import MAGIC, SUFFIX
-from ..conversion.file_import import FileImport, Reading, show_scan
+from ..conversion.file_import import FileImport, Reading, doubts_of_place, show_scan
 from ..conversion.file_storing import FileStoring
 from ..conversion.placement import placed
 from ..conversion.points_settings import (
@@ -30,7 +30,7 @@ from ..conversion.points_settings import (
 )
 from ..conversion.series import begin_series, first_shown
 from ..conversion.surfel_objects import active_collection, add_object_of, select_only
-from ..geometry.attributes import offset_of, read_surfels, set_offset
+from ..geometry.attributes import read_surfels, set_offset
 from ..geometry.scene_offset import Surroundings, keep_offset, taken_from
 from ..geometry.surfel_files import keep_coarsest, relative_path
 from ..ids import IMPORT_FILE
@@ -38,9 +38,6 @@ from ..spoken import said
 from .file_paths import absolute, file_sentence, path_property
 from .menu_entry import with_menu_entry
 from .modal_work import FileWork, ModalWork, Writing
-
-#: Steps of Blender's numbers that are coarse, in half-axes of the median surfel.
-_COARSE = 0.1
 
 
 class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ModalWork, ImportHelper, bpy.types.Operator):
@@ -222,7 +219,6 @@ contents tell"""
             if self.is_series:
                 path = relative_path(absolute(self.filepath))
                 self._tell([begin_series(made, path, self._frame_offset, self, Reading.of(self), work.path)])
-            self._tell_place(made, work.surfels)
         else:
             self._finish_keeping(context, work)
 
@@ -254,22 +250,8 @@ contents tell"""
         set_offset(mesh, offset)
         made = add_object_of(mesh, place, [active_collection(context)])
         select_only(context, [made])
-        self._tell_place(made, read_surfels(mesh)[0])
+        self._tell(doubts_of_place(made, read_surfels(mesh)[0].scales))
         return count
-
-    def _tell_place(self, made, surfels):
-        """Warn of a place so far out that Blender's own numbers are coarse beside the surfels."""
-        step = float(np.spacing(np.abs(np.array(made.matrix_world.translation, np.float32)).max()))
-        if not step > _COARSE * float(np.median(surfels.scales)):
-            return
-        why = said(
-            "Blender keeps places so far out in steps of {step:.3g}, also those of cameras and lights; this engine "
-            "draws and exports the surfels exactly",
-            step=step,
-        )
-        self.report({"WARNING"}, why)
-        if aside := float(np.linalg.norm(offset_of(made.data))):
-            self.report({"WARNING"}, said("Other engines show these surfels {aside:.2g} aside", aside=aside))
 
     def _sentence(self, error):
         return f"{self._name}: {file_sentence(error)}"

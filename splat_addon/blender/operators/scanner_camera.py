@@ -25,6 +25,12 @@ _STEPS = 8
 #: How much nearer and farther than a scan reaches a camera sees.
 _NEAR, _FAR = 1e-4, 10.0
 
+#: Millimetres of a camera's sensor, and of Blender's longest focal length.
+_SENSOR, _LONGEST = 36.0, 5000.0
+
+#: Share of a scan that a camera that looks at it always shows.
+_NEARLY_ALL = 0.98
+
 
 class OBJECT_OT_surfels_scanner_camera(bpy.types.Operator):
     """Add a camera that goes where the scanner went during the scene's frames: from place to place, or along the \
@@ -59,12 +65,17 @@ flight. At a single place it turns around once"""
         path = scanner_path_of(owner.data)
         places = [owner.matrix_world @ Vector(place + offset_of(owner.data)) for place in path[:, :3]]
         positions = read_surfels(owner.data, np.zeros(3))[0].positions
-        middle = owner.matrix_world @ Vector(np.median(positions, axis=0).astype(np.float64))
-        reach = float(np.ptp(positions, axis=0).max()) * max(owner.matrix_world.to_scale())
+        centre, scale = np.median(positions, axis=0).astype(np.float64), max(owner.matrix_world.to_scale())
+        middle = owner.matrix_world @ Vector(centre)
+        reach = float(np.ptp(positions, axis=0).max()) * scale
         flew = bool(owner.data.get(SCANNER_FLEW))
         is_ahead = self.look == "AHEAD" or (self.look == "AUTO" and not flew)
         keys = _keys(places, _moments(path, flew), None if is_ahead else middle)
-        camera = _new_camera(context, _NEAR * reach, _FAR * (reach + max((p - middle).length for p in places)))
+        ways = [(place - middle).length for place in places]
+        camera = _new_camera(context, _NEAR * reach, _FAR * (reach + max(ways)))
+        if not is_ahead:
+            around = scale * float(np.quantile(np.linalg.norm(positions - centre, axis=1), _NEARLY_ALL))
+            camera.data.lens = _lens(scene.render, around, min(ways))
         first, last = scene.frame_start, max(scene.frame_end, scene.frame_start + 1)
         for share, place, turned in keys:
             camera.location, camera.rotation_quaternion = place, turned
@@ -109,6 +120,13 @@ def _unbroken(keys: list[tuple[float, Vector, Quaternion]]) -> list[tuple[float,
     for (_, _, before), (_, _, turned) in pairwise(keys):
         turned.make_compatible(before)
     return keys
+
+
+def _lens(render: bpy.types.RenderSettings, around: float, nearest: float) -> float:
+    """The focal length in millimetres at which a ball of the radius `around` fills a picture from `nearest`."""
+    wide, tall = render.resolution_x * render.pixel_aspect_x, render.resolution_y * render.pixel_aspect_y
+    filled = _SENSOR / 2 * min(wide, tall) / max(wide, tall) * nearest / max(around, 1e-6)
+    return min(max(WIDE, filled), _LONGEST)
 
 
 def _new_camera(context: bpy.types.Context, near: float, far: float) -> bpy.types.Object:

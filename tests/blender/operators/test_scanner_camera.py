@@ -86,6 +86,8 @@ def test_a_flight_is_estimated_and_looks_at_the_scan(tmp_path):
         assert np.abs(where - CORNER - (x, 0, 500)).max() < 15
         to_middle = Vector(CORNER - where + (120, 0, 5)).normalized()
         assert np.abs(towards - to_middle).max() < 0.05
+    # the scan reaches 240 x 300, and fills the picture from 500 above
+    assert 170 < 500 * np.tan(bpy.context.scene.camera.data.angle / 2) * 9 / 16 < 230
 
 
 def test_scans_whose_file_tells_no_place_or_that_are_empty_have_none(tmp_path):
