@@ -31,6 +31,7 @@ class Cells:
         place, in units, with a final infinite one at place N, which stands for "no point". first: (C + 1,) first place
         of each cell, and N. place_of_point: (N,). queries: (Q,) the queried points, ascending; cell_of_query,
         place_of_query: (Q,); is_far: (Q,) whether it lies in the last cells, as far_points do.
+        candidate_counts: number of points in the block around each cell that holds a query.
     """
 
     def __init__(self, positions: np.ndarray, size: float, queries: np.ndarray):
@@ -55,15 +56,12 @@ class Cells:
         cell_of_place = np.repeat(np.arange(len(self._keys)), np.diff(self.first))
         self._cells, self.cell_of_query = np.unique(cell_of_place[self.place_of_query], return_inverse=True)
         self._starts, self._counts = self._rows_of_blocks()
-
-    def candidate_counts(self) -> np.ndarray:
-        """(C,) number of points in the block around each cell that holds a query."""
-        return self._counts.sum(axis=1)
+        self.candidate_counts = self._counts.sum(axis=1)
 
     def candidates(self, cells: np.ndarray) -> np.ndarray:
         """(c, m) places of the points in the blocks around cells (by `cell_of_query`), padded with N."""
         starts, counts = self._starts[cells].ravel(), self._counts[cells].ravel()
-        sums = self._counts[cells].sum(axis=1)
+        sums = self.candidate_counts[cells]
         places = np.full((len(cells), sums.max()), len(self.order), np.int64)
         places[np.arange(places.shape[1]) < sums[:, None]] = ranges(starts, counts)
         return places

@@ -7,6 +7,7 @@ directions; its second moments give the ellipse's axes, and its largest extent t
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 
 import numpy as np
@@ -71,12 +72,12 @@ def tangent_ellipses(
         least_alike[creases.points] = creases.cosine
 
     def job(part: slice):
-        near, own = np.ascontiguousarray(neighbours[part].T), normal_columns[:, part]
+        near, own = neighbours[part].T.astype(np.intp, order="C"), normal_columns[:, part]
         frame = (*tangent_frames(normals[part]), normals[part])
         away, scale = _offsets(columns, near, part)
         along_u, along_v, height = (_along(away, w.T.astype(np.float32)) for w in frame)
         square = along_u * along_u + along_v * along_v
-        bounds = _along([column[near] for column in normal_columns], own) > least_alike[part]
+        bounds = _along([column.take(near) for column in normal_columns], own) > least_alike[part]
         bounds &= height * height <= np.float32(_STEEPEST_SLOPE**2) * square
         spacing, known[part] = _spacings(square, bounds)
         to_spacing = (1 / spacing).astype(np.float32)
@@ -111,7 +112,7 @@ def are_borne(positions: np.ndarray, normals: np.ndarray, neighbours: np.ndarray
 def _offsets(columns: np.ndarray, near: np.ndarray, part: slice) -> tuple[list[np.ndarray], np.ndarray]:
     """x, y and z, (k, n) float32 each, of neighbours relative to their points, in units of (n,), about the distance of
     the farthest, which keeps small and large ones within the range of float32."""
-    away = [column[near] - column[part] for column in columns]
+    away = [column.take(near) - column[part] for column in columns]
     scale = np.maximum.reduce([np.abs(a[-1]) for a in away])
     return [np.divide(a, scale, dtype=np.float32, casting="same_kind") for a in away], scale
 
@@ -131,8 +132,12 @@ def _spacings(square: np.ndarray, bounds: np.ndarray) -> tuple[np.ndarray, np.nd
     A disc that reaches to the j-th neighbour holds j + 1 points. square: (k, n) squared distances, nearest first.
     bounds: (k, n).
     """
-    farthest = np.maximum.accumulate(np.where(bounds, square, np.float32(0)), axis=0)
-    counts = np.cumsum(bounds, axis=0, dtype=np.int16)
+    farthest, counts = np.where(bounds, square, np.float32(0)), bounds.astype(np.float32)
+    # numpy accumulates along the first axis at a tenth of the speed
+    for before, row in itertools.pairwise(farthest):
+        np.maximum(row, before, out=row)
+    for before, row in itertools.pairwise(counts):
+        row += before
     areas = farthest / (counts + np.float32(1))
     areas[:-1][counts[:-1] < _FEWEST] = np.inf
     known = farthest[-1] > 0

@@ -118,7 +118,7 @@ def _searched(
 ) -> np.ndarray:
     """(Q,) bool: for which of the queries everything was found. look: called with some of them, in threads; returns for
     which it was. report: called with their number so far."""
-    candidates, certain = cells.candidate_counts(), np.zeros(len(cells.queries), bool)
+    candidates, certain = cells.candidate_counts, np.zeros(len(cells.queries), bool)
     worth = min(_WORTH_LOOKING * (count + 1), len(cells.order))
     # Points in the last cells may be far from others in the same cell.
     queries = np.flatnonzero((candidates[cells.cell_of_query] >= worth) & ~cells.is_far)
@@ -185,7 +185,7 @@ def _among_thinned(found: _Found, thinned: _Thinned, coarse: Cells, queries: np.
 
 def _certain_squares(cells: Cells, queries: np.ndarray) -> np.ndarray:
     """(q,) squared distance, in units, below which all points are candidates, at distances that are not cut off."""
-    has_all = cells.candidate_counts()[cells.cell_of_query[queries]] == len(cells.order)
+    has_all = cells.candidate_counts[cells.cell_of_query[queries]] == len(cells.order)
     return np.where(has_all, CUT_OFF, cells.certain_squares(queries))
 
 

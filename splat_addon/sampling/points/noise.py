@@ -15,7 +15,7 @@ import numpy as np
 
 from ...vectors import unit
 from ...workers import in_portions
-from .normals import CHUNK, LocalPlanes, covariances, least_around, least_planes, thicknesses
+from .normals import CHUNK, PAIRS, LocalPlanes, covariances, least_around, least_planes, thicknesses
 
 #: Neighbours of noisy points, as a multiple of those of others.
 WIDER = 1.5
@@ -65,66 +65,86 @@ def smoothed_normals(
     Returns (n, 3) unit normals in either direction, (n, 3) a point on each one's plane, relative to the noisy point,
     and (n,) bool, which of the normals are not to be trusted.
     """
-    middles, thick = planes.middles + positions.T, thicknesses(planes.moments)
-    moments = planes.moments.astype(np.float32)
-    normals, heights, is_thick = planes.normals.copy(), np.empty((len(rows), 3)), np.empty(len(rows), bool)
+    middles, thick = planes.middles + positions.T, thicknesses(planes.moments).astype(np.float32)
+    # rows of 32 bytes are gathered at once
+    moments = np.zeros((len(thick), 8), np.float32)
+    moments[:, : len(PAIRS)] = planes.moments.T
+    directions = np.ascontiguousarray(planes.normals.T, np.float32)
+    heights, is_thick = np.empty((len(rows), 3)), np.empty(len(rows), bool)
 
     def widened(part: slice):
         own = rows[part]
-        near = np.concatenate([neighbours[own].T, own[None]])
+        near = np.concatenate([neighbours[own].T, own[None]]).astype(np.intp, order="C")
         mean, joined = _joined_moments(middles, moments, near)
-        normals[own], _ = least_planes(joined)
+        directions[:, own] = least_planes(joined)[0].T
         heights[part] = mean.T - positions[own]
-        is_thick[part] = thick[near].min(axis=0) > _THICK
+        is_thick[part] = thick.take(near).min(axis=0) > _THICK
 
-    in_portions(len(rows), CHUNK // 4, widened, lambda share: report(0.5 * share))
-    _average(normals, neighbours[:, :_AROUND], rows, report=lambda share: report(0.5 + 0.5 * share))
-    return normals[rows], heights, is_thick
-
-
-def _average(
-    normals: np.ndarray,
-    neighbours: np.ndarray,
-    rows: np.ndarray,
-    *,
-    report: Callable[[float], None] = lambda share: None,
-    are_on_sides: bool = False,
-):
-    """Give some of (N, 3) unit normals, in place, the mean of themselves and those of their neighbours that are alike,
-    in either direction unless they are on their sides. neighbours: (N, k) indices."""
-    columns, made = np.ascontiguousarray(normals.T, np.float32), np.empty((len(rows), 3))
-
-    def averaged(part: slice):
-        own = rows[part]
-        at = np.ascontiguousarray(neighbours[own].T)
-        near = [column[at] for column in columns]
-        cosine = sum(n * column[own] for n, column in zip(near, columns, strict=True))
-        likeness = cosine if are_on_sides else np.abs(cosine)
-        weight = np.exp((likeness - 1) / np.float32(_ALIKE**2))
-        weight = weight if are_on_sides else np.copysign(weight, cosine)
-        made[part] = unit(normals[own] + np.stack([np.einsum("kn,kn->n", weight, n) for n in near], axis=1))
-
-    in_portions(len(rows), CHUNK, averaged, report)
-    normals[rows] = made
-
-
-def _joined_moments(middles: np.ndarray, moments: np.ndarray, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(3, n) mean and (6, n) covariances of neighbourhoods taken together. middles: (3, M), moments: (6, M) of each;
-    at: (m, n) which of them, the last one's middle near the others'."""
-    centre = middles[:, at[-1]]
-    mean, between = covariances([column[at] - c for column, c in zip(middles, centre, strict=True)])
-    return centre + mean, between + np.stack([row[at].sum(axis=0) for row in moments]) / len(at)
+    in_portions(len(rows), CHUNK // 8, widened, lambda share: report(0.5 * share))
+    _average(
+        directions, neighbours[:, :_AROUND], rows, _alike_or_opposite, report=lambda share: report(0.5 + 0.5 * share)
+    )
+    return unit(directions[:, rows].T.astype(np.float64)), heights, is_thick
 
 
 def of_surroundings(normals: np.ndarray, neighbours: np.ndarray, rows: np.ndarray) -> np.ndarray:
     """(n, 3) mean directions around some points, whose own normals are not to be trusted, so that they are lit as their
     surroundings. normals: (N, 3) unit, on their sides."""
-    made = normals.copy()
-    for _ in range(_ROUNDS_OF_ALIKE):
-        _average(made, neighbours[:, :_AROUND], rows, are_on_sides=True)
-    for _ in range(_ROUNDS):
-        near = made[neighbours[rows]]
-        # those on the other side of a thin sheet face the other way
-        faces_alike = np.einsum("nkc,nc->nk", near, made[rows]) > _OPPOSED
-        made[rows] = unit(np.einsum("nkc,nk->nc", near, faces_alike.astype(np.float64)) + made[rows])
-    return made[rows]
+    directions = np.ascontiguousarray(normals.T, np.float32)
+    _average(directions, neighbours[:, :_AROUND], rows, _alike, _ROUNDS_OF_ALIKE)
+    _average(directions, neighbours, rows, _not_opposed, _ROUNDS)
+    return unit(directions[:, rows].T.astype(np.float64))
+
+
+def _average(
+    directions: np.ndarray,
+    neighbours: np.ndarray,
+    rows: np.ndarray,
+    weights: Callable[[np.ndarray], np.ndarray],
+    rounds: int = 1,
+    report: Callable[[float], None] = lambda share: None,
+):
+    """Give some of (3, N) float32 unit normals, in place, the weighted mean of themselves and their neighbours'.
+
+    neighbours: (N, k) indices. weights: of their cosines. report: called with the finished share of a round.
+    """
+    near, made = np.ascontiguousarray(neighbours[rows].T), np.empty((3, len(rows)), np.float32)
+
+    def averaged(part: slice):
+        at, own = near[:, part].astype(np.intp), directions[:, rows[part]]
+        theirs = [column.take(at) for column in directions]
+        cosine = theirs[0] * own[0]
+        for column, mine in zip(theirs[1:], own[1:], strict=True):
+            cosine += column * mine
+        weight = weights(cosine)
+        sums = own + np.stack([np.einsum("kn,kn->n", weight, column) for column in theirs])
+        made[:, part] = sums / np.sqrt(np.einsum("in,in->n", sums, sums))
+
+    for _ in range(rounds):
+        in_portions(len(rows), CHUNK // 2, averaged, report)
+        directions[:, rows] = made
+
+
+def _alike(cosine: np.ndarray) -> np.ndarray:
+    """Weights of normals that differ little."""
+    return np.exp((cosine - 1) * np.float32(_ALIKE**-2))
+
+
+def _alike_or_opposite(cosine: np.ndarray) -> np.ndarray:
+    """The same, in either direction."""
+    return np.copysign(_alike(np.abs(cosine)), cosine)
+
+
+def _not_opposed(cosine: np.ndarray) -> np.ndarray:
+    """All but those on the other side of a thin sheet, which face the other way."""
+    return (cosine > _OPPOSED).astype(np.float32)
+
+
+def _joined_moments(middles: np.ndarray, moments: np.ndarray, at: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(3, n) mean and (6, n) float32 covariances of neighbourhoods taken together. middles: (3, M), moments: (M, 8)
+    float32 of each, the last two 0; at: (m, n) which of them, the last one's middle near the others'."""
+    centre = middles[:, at[-1]]
+    away = [(column.take(at) - c).astype(np.float32) for column, c in zip(middles, centre, strict=True)]
+    mean, between = covariances(away)
+    within = moments.take(at, axis=0).sum(axis=0).T[: len(PAIRS)]
+    return centre + mean, between + within / np.float32(len(at))

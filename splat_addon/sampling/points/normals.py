@@ -19,9 +19,9 @@ CHUNK = 8192
 #: Entries of a symmetric matrix in the order of `least_directions`.
 PAIRS = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
 
-#: If the sine of the angle between rows of the shifted matrix is below this, its kernel is found by an iterative
-#: solver.
-_DOUBTFUL = 1e-6
+#: If the sine of the angle between rows of the shifted matrix is below this power of the arithmetic's precision, its
+#: kernel is found by an iterative solver.
+_DOUBTFUL = 0.4
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,8 +116,8 @@ def least_planes(moments: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def _moments(columns: np.ndarray, neighbours: np.ndarray, part: slice | np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(3, n) means and (6, n) covariances of each point with its neighbours, relative to it."""
-    at = np.ascontiguousarray(neighbours.T)
-    away = [column[at] - column[part] for column in columns]
+    at = neighbours.T.astype(np.intp, order="C")
+    away = [column.take(at) - column[part] for column in columns]
     return covariances(away, at_middle=1)
 
 
@@ -141,7 +141,7 @@ def least_directions(moments: np.ndarray) -> np.ndarray:
     least, size = _least_values(moments)
     a, b, c = xx - least, yy - least, zz - least
     rows = (a, xy, xz), (xy, b, yz), (xz, yz, c)
-    crosses = np.empty((3, 3, len(least)))
+    crosses = np.empty((3, 3, len(least)), moments.dtype)
     for cross, p, q in zip(crosses, rows, (*rows[1:], rows[0]), strict=True):
         for row, (i, j) in zip(cross, ((1, 2), (2, 0), (0, 1)), strict=True):
             np.multiply(p[i], q[j], out=row)
@@ -152,11 +152,11 @@ def least_directions(moments: np.ndarray) -> np.ndarray:
         is_longer = others > square
         np.copyto(vectors, cross, where=is_longer)
         np.copyto(square, others, where=is_longer)
-    doubtful = np.flatnonzero(~(square > _DOUBTFUL**2 * size**4) | (square == 0))
+    doubtful = np.flatnonzero(~(square > np.finfo(moments.dtype).eps ** (2 * _DOUBTFUL) * size**4) | (square == 0))
     vectors /= np.sqrt(np.where(square > 0, square, 1))
     if len(doubtful):
         matrices = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])[:, :, doubtful].transpose(2, 0, 1)
-        vectors[:, doubtful] = np.linalg.eigh(matrices)[1][:, :, 0].T
+        vectors[:, doubtful] = np.linalg.eigh(matrices.astype(np.float64))[1][:, :, 0].T
     return vectors.T
 
 

@@ -13,6 +13,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from ...runs import sorted_with_order
 from ...workers import in_portions
 
 #: Neighbours that the graph connects; more would cost time and bridge thin gaps.
@@ -52,7 +53,8 @@ def consistent_signs(
     agreement = _agreement(columns, directions, *ends)
     votes = np.where(flipped[ends[0]] ^ flipped[ends[1]], -agreement, agreement)
     outside = int(part.max(initial=-1)) + 1
-    label, flips = _joined(part[ends], votes, outside)
+    ends, votes = _counted(part[ends], votes, outside)
+    label, flips = _joined(ends, votes, outside)
     faces_outside = np.zeros(len(part), bool)
     if sides is not None:
         more, both = sides
@@ -62,7 +64,7 @@ def consistent_signs(
         clear = more * np.abs(more) / np.maximum(both * both, np.float32(1e-12))
         seen = np.bincount(part, np.where(faces_outside, np.where(flipped, -clear, clear), 0), outside)
         bodies = np.flatnonzero(seen)
-        ends = np.concatenate([part[ends], [bodies, np.full(len(bodies), outside)]], axis=1)
+        ends = np.concatenate([ends, [bodies, np.full(len(bodies), outside)]], axis=1)
         _, flips = _joined(ends, np.concatenate([votes, np.float32(seen[bodies])]), outside + 1)
         flips ^= flips[outside]
     report(1.0)
@@ -100,7 +102,7 @@ def _joined(ends: np.ndarray, votes: np.ndarray, count: int) -> tuple[np.ndarray
     label, flipped = np.arange(count), np.zeros(count, bool)
     while ends.shape[1]:
         ends, votes = _counted(ends, votes, count)
-        number, flip = _merge(ends, votes < 0, count)
+        number, flip = _merge(ends, votes, count)
         flipped ^= flip[label]
         label = number[label]
         votes = np.where(flip[ends[0]] ^ flip[ends[1]], -votes, votes)
@@ -111,14 +113,11 @@ def _joined(ends: np.ndarray, votes: np.ndarray, count: int) -> tuple[np.ndarray
 
 
 def _counted(ends: np.ndarray, votes: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """(2, P) the different pairs among (2, E) ends, and (P,) the sum of each one's votes, clearest first."""
+    """(2, P) the different pairs among (2, E) ends, ascending, and (P,) the sum of each one's votes."""
     keys = np.minimum(*ends).astype(np.int64) * count + np.maximum(*ends)
-    order = np.argsort(keys, kind="stable")
-    keys, votes = keys[order], votes[order]
+    order, keys = sorted_with_order(keys, count * count)
     first = np.flatnonzero(np.diff(keys, prepend=-1))
-    pairs, sums = np.stack(np.divmod(keys[first], count)), np.add.reduceat(votes, first)
-    order = np.argsort(-np.abs(sums), kind="stable")
-    return pairs[:, order], sums[order]
+    return np.stack(np.divmod(keys[first], count)), np.add.reduceat(votes[order], first)
 
 
 def facing_outward(positions: np.ndarray, normals: np.ndarray, part: np.ndarray) -> np.ndarray:
@@ -183,24 +182,28 @@ def _agreement(columns: np.ndarray, directions: np.ndarray, a: np.ndarray, b: np
     return agreement
 
 
-def _merge(parts: np.ndarray, turned: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+def _merge(parts: np.ndarray, votes: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
     """Join every part to another along its best edge.
 
-    parts: (2, E) different parts at the ends of each edge, best edge first.
-    turned: (E,) whether their normals disagree across it.
+    parts: (2, E) different parts at the ends of each edge. votes: (E,) below 0 where their normals disagree across it;
+    the best edge has the clearest vote, and of several such the first place.
     Returns (count,) the new number of each part, and (count,) whether it must flip to agree with the others in it.
     """
+    clearness, clearest = np.abs(votes), np.full(count, np.float32(-1))
+    for end in parts:
+        np.maximum.at(clearest, end, clearness)
     best = np.full(count, parts.shape[1])
     for end in parts:
+        edge = np.flatnonzero(clearness == clearest[end])[::-1]
         first = np.full(count, parts.shape[1])
-        # With several assignments to one part the last one stays: the best edge, because they come in reverse order.
-        first[end[::-1]] = np.arange(parts.shape[1])[::-1]
+        # With several assignments to one part the last one stays.
+        first[end[edge]] = edge
         best = np.minimum(best, first)
     joined = np.flatnonzero(best < parts.shape[1])
     edge = best[joined]
     parent, flip = np.arange(count), np.zeros(count, bool)
     parent[joined] = parts[0, edge] + parts[1, edge] - joined
-    flip[joined] = turned[edge]
+    flip[joined] = votes[edge] < 0
     # Two parts that chose the same edge point at each other; the smaller one becomes the root.
     root = (parent[parent] == np.arange(count)) & (np.arange(count) < parent)
     parent[root], flip[root] = np.flatnonzero(root), False
