@@ -149,7 +149,8 @@ def _install(environment: Environment, purpose: str, command: list[str]) -> None
         shutil.rmtree(folder, ignore_errors=True)
         _make_venv(folder, command)
     wanted = [f"bpy=={environment.bpy_version}", "-r", str(_requirements(purpose))]
-    options = ["--disable-pip-version-check", "--no-input", "--progress-bar", "off", "--prefer-binary"]
+    # Python compiles what a script imports, in a few seconds; to compile all that packages have takes half a minute
+    options = ["--disable-pip-version-check", "--no-input", "--no-compile", "--progress-bar", "off", "--prefer-binary"]
     code, output = run_showing([str(environment.python), "-m", "pip", "install", *options, *wanted], pip_line)
     if code:
         raise Problem(install_problem(output) or f"pip could not install the requirements: {last_line(output)}.")

@@ -67,8 +67,9 @@ def test_command(program: str, gpu_backend: str | None, pytest_arguments: list[s
 def _fetch(folder: Path, version: str, python: Path) -> None:
     shutil.rmtree(folder, ignore_errors=True)
     print(f"Fetching the tests' packages for the program's Python {version}; this is done once.", flush=True)
-    options = ["--python-version", version, "--only-binary=:all:", "--progress-bar", "off", "--no-input"]
-    command = [str(python), "-m", "pip", "install", "--target", str(folder), *options, "-r", str(REQUIREMENTS)]
+    options = ["--python-version", version, "--only-binary=:all:", "--no-compile", "--progress-bar", "off"]
+    where = ["--no-input", "--target", str(folder)]
+    command = [str(python), "-m", "pip", "install", *options, *where, "-r", str(REQUIREMENTS)]
     code, output = run_showing(command, pip_line)
     if code:
         raise Problem(install_problem(output) or f"pip could not fetch the packages: {last_line(output)}.")

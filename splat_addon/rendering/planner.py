@@ -57,6 +57,7 @@ class Planner:
         the scene that lights what is drawn, if that is only a part. eye: where the viewer is, if the camera is a
         probe's or behind a mirror. is_draft: whether a better picture follows. known: what probes saw, if the picture
         is of what is reflected. panes: the glass of the scene, if it is known. options: of `plan`."""
+        is_looked_up = eye is not None
         eye = camera.matrix_world[:3, 3] if eye is None else eye
         whole, scene = whole or scene, self.near_and_far.resolved(scene, camera)
         if glass.is_drawn(scene, settings):
@@ -67,7 +68,7 @@ class Planner:
         frame_plan = plan(scene, camera, settings, history=before, probes=probes, **options)
         check_samplers(frame_plan, self._most_samplers)
         told = {"is_repeatable": is_repeatable, "whole": whole, "eye": eye, "is_draft": is_draft, "panes": panes}
-        seen = self._reflected(scene, camera, settings, frame_plan, told, known)
+        seen = self._reflected(scene, camera, settings, frame_plan, told, known, is_looked_up)
         light = self._bounced(whole, frame_plan, settings, eye, is_draft)
         return Shared(scene, frame_plan, settings, repeated, before, *seen, light, panes)
 
@@ -81,10 +82,11 @@ class Planner:
 
     def _reflected(
         self, scene: Scene, camera: Camera, settings: Settings, frame_plan: FramePlan, told: dict,
-        known: ProbePictures | None,
+        known: ProbePictures | None, is_looked_up: bool,
     ):  # fmt: skip
         """What the plan's probes and mirror see, and the camera, drawn if anything in it has changed; None for what it
-        lacks. told: options of `planned`. known: what probes saw, if the picture is of what is reflected."""
+        lacks. told: options of `planned`. known: what probes saw, if the picture is of what is reflected. is_looked_up:
+        whether the camera is a probe's or behind a mirror."""
 
         def draw(seen: Scene, camera: Camera, of: Viewers, plain: Settings, known: ProbePictures | None) -> Frame:
             shared = self.planned(seen, camera, plain, viewers=of, known=known, **told)
@@ -98,7 +100,7 @@ class Planner:
         return (
             known,
             kept.mirror(scene, mirror, *of) if mirror else None,
-            kept.screen(scene, *of, found[glass.glass]) if found.get(screen.is_seen) else None,
+            kept.screen(scene, *of, found[glass.glass], is_looked_up) if found.get(screen.is_seen) else None,
         )
 
     def was_drawn(self, scene: Scene) -> None:

@@ -28,6 +28,7 @@ from splat_addon.rendering import (
     SurfaceTexture,
     look_at,
 )
+from splat_addon.rendering.scene.light_probe import LightProbe
 from splat_addon.rendering.scene.sun_apart import sun_apart
 from tests.rendering.creased import clipped_iron
 
@@ -340,6 +341,12 @@ def glassy(scene, camera, balls=4):
     return replace(scene, **more, world=(0.3, 0.4, 0.5)), camera
 
 
+def with_a_probe(scene, camera):
+    """The scene with one probe for all glossy balls in front, since each picture of a probe has many with glass."""
+    probe = LightProbe((0.0, -0.7, -0.15), ((1.2, 0.0, 0.0), (0.0, 0.6, 0.0), (0.0, 0.0, 0.6)))
+    return replace(scene, light_probes=(probe,)), camera
+
+
 def unreflected(scene, camera):
     """The scene with an object that is seen and not reflected: reflections do not show what the camera sees."""
     first, *others = scene.polygons
@@ -363,7 +370,7 @@ SPECIAL = {
     "styles": lambda: with_styles(*scenes.polygons(count=COUNT, size=SIZE)),
     "nothing": lambda: of_nothing(*scenes.torus(count=100, size=SIZE)),
     "cards": lambda: with_cards(*scenes.torus(count=COUNT, size=SIZE)),
-    "glass": lambda: unreflected(*glassy(*scenes.polygons(count=COUNT, size=SIZE), balls=2)),
+    "glass": lambda: with_a_probe(*unreflected(*glassy(*scenes.polygons(count=COUNT, size=SIZE), balls=2))),
     "glass_shadows": lambda: glassy(*shadowed(*scenes.polygons(count=COUNT, size=SIZE))),
     "mirrored": lambda: mirrored(*scenes.polygons(count=COUNT, size=SIZE)),
 }

@@ -20,9 +20,11 @@ from splat_addon.rendering import (
     plan,
 )
 from splat_addon.rendering.plan.programs import describe
+from splat_addon.rendering.planner import Planner
 from splat_addon.rendering.probes import drawing, pictures
 from splat_addon.rendering.probes.pictures import LEVEL_SIDE, _lobes
 from splat_addon.rendering.probes.places import MAX_PROBES, probes_of
+from splat_addon.rendering.probes.screen import wider_camera
 from splat_addon.rendering.scene.finish import Finish
 from splat_addon.rendering.scene.light_probe import LightProbe
 from splat_addon.rendering.scene.octahedral import Octahedral, bordered
@@ -91,6 +93,22 @@ def test_what_the_camera_sees_is_drawn_once_for_a_view_and_not_for_faces_of_pano
     assert on_device(lambda device: list(draw(device))) == [1, 1, 2, 2]
     around = Viewers(small, (small, replace(small, matrix_world=look_at((0, 0, 0), (1, 0, 0)))))
     assert "reflections of what the camera sees" in dict(plan(MIRROR, small, SETTINGS, viewers=around).skipped)
+
+
+def test_what_probes_see_through_glass_has_no_more_samples_than_what_they_see():
+    """The frame shows what is behind its glass with 2 x 2 samples a pixel; in a probe that is blurred."""
+    clear = Material(roughness=0.0, finish=Finish(transmission=1.0))
+    seen, small, drawn = replace(MIRROR, polygons=[ball(), ball(clear, (2, 0, 1)), FLOOR]), camera((8, 8)), []
+
+    def draw(shared, view):
+        drawn.append((view.size, shared.plan.samples))
+        size = view.size[::-1]
+        return Frame(color=np.zeros((*size, 4), np.float32), depth=np.ones(size, np.float32), stats={})
+
+    Planner(draw, most_samplers=32).planned(seen, small, replace(SETTINGS, refraction=True))
+    *of_probes, behind = drawn
+    assert behind == (wider_camera(small).size, 2)
+    assert len({size for size, _ in of_probes}) == 2 and {samples for _, samples in of_probes} == {1}
 
 
 def test_a_ball_does_not_see_itself_but_its_shadow(on_device, coarse):

@@ -91,12 +91,14 @@ class Probes:
 
     def screen(
         self, scene: Scene, camera: Camera, settings: Settings, known: ProbePictures | None, draw: Draw,
-        is_behind_glass: bool,
+        is_behind_glass: bool, is_looked_up: bool,
     ) -> ScreenPicture:  # fmt: skip
         """What a camera sees: the same object as long as both stay. known: what the probes see. is_behind_glass:
-        whether it is seen through glass; otherwise only what reflections show is in it."""
+        whether it is seen through glass; otherwise only what reflections show is in it. is_looked_up: whether the
+        camera is a probe's or behind a mirror: its picture has enough samples for what others look up in it."""
         # what is reflected is made smaller by most surfaces
-        plain = replace(_reflecting(_plain(settings), known), supersampling=2 if is_behind_glass else 1)
+        edge = (settings.supersampling if is_looked_up else 2) if is_behind_glass else 1
+        plain = replace(_reflecting(_plain(settings), known), supersampling=edge)
         wider, of_scene = wider_camera(camera), contents(scene)
         view = wider.matrix_world.tobytes(), wider.window, wider.size, wider.near, wider.far
         made_from = view, wider.is_orthographic, plain, known, of_scene, settings.refraction, is_behind_glass
