@@ -118,26 +118,20 @@ def flip():
 
 @pytest.mark.parametrize(
     ("kind", "name"),
-    [*(("splats", name) for name in LIGHTS), ("glass", "sun"), ("glass", "ball"), ("polygons", "low sun"),
-     ("polygons", "spot")],
-)  # fmt: skip
-def test_a_small_picture_is_as_close_to_its_limit_as_with_full_maps(name, kind, scene_of, render, full, flip):
-    """Its limit is the mean of many samples with full maps. The difference itself is bounded, too."""
-    scene, camera = scene_of(kind, LIGHTS[name]), from_afar(6)
+    [("splats", "sun"), ("splats", "ball"), ("splats", "area"), ("glass", "sun"), ("polygons", "spot")],
+)
+def test_a_small_picture_is_as_with_full_maps(name, kind, scene_of, render, full, flip):
+    """With maps of two texels a pixel, splats would exceed the bound."""
+    scene, camera = scene_of(kind, LIGHTS[name]), from_afar(3)
     assert max(sides(scene, camera)) < SETTINGS.shadow_resolution
-    limit = full(lambda: render(scene, camera, replace(SETTINGS, samples=4)).color)
-    covered = np.abs(limit - limit[0, 0]).max(axis=2) > 0.01
     small, large = render(scene, camera, SETTINGS).color, full(lambda: render(scene, camera, SETTINGS).color)
-    errors = [np.sqrt(((color - limit)[covered] ** 2).mean()) for color in (small, large)]
-    assert errors[0] < 1.1 * errors[1] + 0.0015, errors
-    assert flip(small, large) < 0.001
+    assert flip(small, large) < 0.0004
 
 
-@pytest.mark.parametrize("name", ["sun", "ball"])
-def test_a_dolly_does_not_flicker_where_sizes_change(name, scene_of, render, full, flip):
-    """Maps of two texels a pixel would exceed the bounds, for each of these lights."""
-    scene, settings = scene_of("splats", LIGHTS[name]), replace(SETTINGS, samples=2)
-    cameras = [from_afar(distance) for distance in np.geomspace(2, 8, 4)]
+def test_a_dolly_does_not_flicker_where_sizes_change(scene_of, render, full, flip):
+    """Maps of two texels a pixel would exceed the bounds."""
+    scene, settings = scene_of("splats", LIGHTS["sun"]), replace(SETTINGS, samples=2)
+    cameras = [from_afar(distance) for distance in np.geomspace(2, 8, 6)[:4]]
     found = [max(sides(scene, camera)) for camera in cameras]
     assert len(set(found)) >= 3 and found == sorted(found, reverse=True)
     small = [render(scene, camera, settings).color for camera in cameras]
