@@ -25,7 +25,7 @@ from .conversion import (
     series,
     source_record,
 )
-from .engine import final_render, render_engine, render_passes
+from .engine import render_engine, render_passes, render_resources
 from .geometry import surfel_files
 from .ui import (
     camera_panels,
@@ -46,7 +46,7 @@ from .ui import (
 MODULES = (
     properties,
     render_passes,
-    final_render,
+    render_resources,
     render_engine,
     preset_panels,
     render_panels,

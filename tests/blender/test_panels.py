@@ -45,7 +45,14 @@ TABS = {
 READERS = {
     "light": ("export/shading",),
     "camera": ("cameras",),
-    "render": ("cameras", "engine/final_render", "engine/motion_blur", "properties", "render_settings/samples"),
+    "render": (
+        "cameras",
+        "engine/final_render",
+        "engine/render_resources",
+        "engine/motion_blur",
+        "properties",
+        "render_settings/samples",
+    ),
     "view layer": (
         "engine/final_render",
         "engine/motion_blur",

@@ -14,7 +14,7 @@ sys.path[:0] = [str(Path(__file__).resolve().parents[2]), str(Path(__file__).res
 from steps import in_view, play, redrawn, until  # noqa: E402
 
 import splat_addon  # noqa: E402
-from splat_addon.blender.engine import final_render, measuring  # noqa: E402
+from splat_addon.blender.engine import exchange, measuring  # noqa: E402
 
 
 def render_properties():
@@ -40,7 +40,7 @@ def steps():
     rows = measuring.measured(scene).rows
     bpy.ops.render.surfel_measured_use(row=len(rows) - 1)
     yield from redrawn()
-    is_given_back = final_render.exchanged() == final_render.Exchange()
+    is_given_back = exchange.exchanged() == exchange.Exchange()
     return {"operator": list(result), "rows": [row.choice.name for row in rows], "is_given_back": is_given_back}
 
 

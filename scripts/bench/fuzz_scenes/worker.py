@@ -28,6 +28,7 @@ from environment.leaving import run_and_leave
 from splat_addon.blender import doors
 from splat_addon.blender.cameras import final_camera
 from splat_addon.blender.engine import final_render
+from splat_addon.blender.engine.exchange import exchanging
 from splat_addon.blender.engine.render_passes import outputs_of
 from splat_addon.blender.export.live_meshes import LiveMeshes
 from splat_addon.blender.export.scene import export_scene
@@ -116,7 +117,7 @@ class Case:
                 values = getattr(frame, name)
                 self.not_finite += 0 if values is None else int(np.count_nonzero(~np.isfinite(values)))
 
-        with final_render.exchanging(kept=look):
+        with exchanging(kept=look):
             self._called(bpy.ops.render.render)
         self.unworded += [each for each in final_render.last_frame_stats.get("notes", ()) if FAULT in each]
 

@@ -15,7 +15,7 @@ from ...claims import claimed, remove_leftovers
 from ...rendering.assembly.frame_parts import joined_parts
 from ...sampling import joined_blocks, read_block, read_request
 from ..cameras import picture_size
-from ..engine import final_render
+from ..engine.exchange import exchanging
 from .convert import (
     add_blocks_argument,
     batch_of,
@@ -94,7 +94,7 @@ def _tile_files(scene: bpy.types.Scene, frame: int, tiles: tuple[int, int]) -> I
 
 def _merge(scene: bpy.types.Scene, frame: int, parts: list[Path]) -> None:
     wholes = joined_parts(parts, picture_size(scene.render), frame)
-    with final_render.exchanging(given=lambda layer, view: wholes.pop((layer, view), None)):
+    with exchanging(given=lambda layer, view: wholes.pop((layer, view), None)):
         write_picture(scene, frame)
 
 

@@ -16,7 +16,7 @@ from ...rendering import Frame
 from ...rendering.assembly.frame_parts import Part, write_part
 from ...whole_files import unfinished
 from ..cameras import picture_size
-from ..engine import final_render
+from ..engine.exchange import exchanging
 from .out_paths import made_room
 from .pictures import (
     add_picture_arguments,
@@ -99,7 +99,7 @@ def _tiles(scene: bpy.types.Scene, frames: list[int], options: argparse.Namespac
 def _drawn() -> dict[tuple[str, str], Frame]:
     """Collect what the engine draws, by view layer and view."""
     drawn = {}
-    with final_render.exchanging(kept=lambda layer, view, frame: drawn.update({(layer, view): frame})):
+    with exchanging(kept=lambda layer, view, frame: drawn.update({(layer, view): frame})):
         _render()
     return drawn
 

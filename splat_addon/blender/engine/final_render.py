@@ -3,81 +3,36 @@
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from time import perf_counter
-from typing import NamedTuple
-from weakref import ref
 
 import bpy
 
 from ...faults import is_worded, sentence_of
-from ...rendering import Camera, Frame, Panorama, RenderCancelled, Renderer, Scene, open_device
+from ...rendering import Camera, Frame, Panorama, RenderCancelled, Scene
 from ..cameras import depth_of_field_notes, rendered_part, view_camera
-from ..doors import unattended, with_handlers
-from ..export.changes import Changes, changes_of
-from ..export.live_meshes import LiveMeshes
+from ..export.changes import Changes
 from ..export.notes import Notes
 from ..export.scene import export_scene
-from ..export.surfel_store import SurfelStore
 from ..ids import RENDER_SETTINGS
-from ..materials import matcap_images
-from ..preferences import most_bytes
 from ..properties import final_settings, stops_where_broken
 from ..render_settings.aim import target_of
+from .exchange import exchanged
 from .motion_blur import motion_blur_notes, moving_time, shutter_times
 from .render_passes import absent_passes, hand_over, outputs_of
-from .targets import Drawing, Targets
+from .render_resources import Resources, acquired, is_last_of_render, release
+from .targets import Drawing
 
 #: Statistics of the last rendered frame, for scripts: see `Renderer`, plus `notes`, and in `live_meshes` the counts of
 #: `LiveMeshes`.
 last_frame_stats: dict = {}
 
 
-class Exchange(NamedTuple):
-    """What the engine does beside a render that Blender asks for, by the names of a view layer and a view.
-
-    kept: called with each frame that was drawn; to keep tiles. given: returns a frame instead of drawing it; of tiles
-        that were joined. drawn_by: draws each picture instead of the renderer; to measure the scene.
-    """
-
-    kept: Callable[[str, str, Frame], None] | None = None
-    given: Callable[[str, str], Frame | None] | None = None
-    drawn_by: Callable[[Drawing], Frame] | None = None
-
-
-_exchange = Exchange()
-
-
-def exchange(**callbacks) -> None:
-    """Exchange frames with the renders that follow: Blender hands nothing on to an engine. callbacks: fields of
-    `Exchange`; without any, nothing is exchanged."""
-    global _exchange
-    _exchange = Exchange(**callbacks)
-
-
-def exchanged() -> Exchange:
-    """What renders exchange at present."""
-    return _exchange
-
-
-@contextmanager
-def exchanging(**callbacks) -> Iterator[None]:
-    """Exchange frames with the renders within this context, as in `exchange`."""
-    before = _exchange
-    exchange(**callbacks)
-    try:
-        yield
-    finally:
-        exchange(**before._asdict())
-
-
 def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> None:
     """Render one view layer. Raises ValueError or RuntimeError with a sentence for the user."""
-    if _exchange.given is not None:
+    if exchanged().given is not None:
         _hand_over_given(engine, depsgraph)
         return
     if engine.is_preview:
@@ -85,7 +40,7 @@ def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> No
         return
     settings = final_settings(depsgraph.view_layer, depsgraph.scene, outputs_of(depsgraph.view_layer))
     _tell_step(engine, "Reading surfels")
-    resources = _acquire_resources()
+    resources = acquired()
     resources.note_changes(engine, depsgraph)
     is_cancelled = False
     try:
@@ -94,14 +49,14 @@ def render(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> No
             engine.active_view_set(view)
             frame, notes = _picture(engine, depsgraph, resources, settings, (number, len(views)))
             _tell(engine, frame, notes, resources)
-            if _exchange.kept is not None:
-                _exchange.kept(depsgraph.view_layer.name, view, frame)
+            if exchanged().kept is not None:
+                exchanged().kept(depsgraph.view_layer.name, view, frame)
             hand_over(engine, depsgraph.view_layer, view, frame)
     except RenderCancelled:
         is_cancelled = True
     finally:
-        if (is_cancelled or _is_last_of_render(engine, depsgraph)) and not depsgraph.scene.render.use_persistent_data:
-            _release_resources()
+        if (is_cancelled or is_last_of_render(engine, depsgraph)) and not depsgraph.scene.render.use_persistent_data:
+            release()
 
 
 def _render_preview(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> None:
@@ -111,7 +66,7 @@ def _render_preview(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgra
     """
     settings = final_settings(depsgraph.view_layer, depsgraph.scene, outputs_of(depsgraph.view_layer))
     settings = replace(settings, samples=min(settings.samples, _PREVIEW_SAMPLES))
-    resources = _Resources(_PREVIEW_SURFELS)
+    resources = Resources(_PREVIEW_SURFELS)
     try:
         views = [view.name for view in engine.get_result().views]
         for number, view in enumerate(views):
@@ -126,7 +81,6 @@ def _render_preview(engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgra
 
 #: A ball of a hundred pixels is smooth with this many.
 _PREVIEW_SAMPLES = 4
-
 #: Of a mesh in a preview, such as the checkered floor that reaches from the camera to the horizon.
 _PREVIEW_SURFELS = 50_000
 
@@ -135,7 +89,7 @@ def _hand_over_given(engine, depsgraph) -> None:
     """Use a given frame. Raises ValueError if it does not match what the view layer requests."""
     layer = depsgraph.view_layer
     for view in [view.name for view in engine.get_result().views]:
-        frame = _exchange.given(layer.name, view)
+        frame = exchanged().given(layer.name, view)
         absent = [name for name in outputs_of(layer) if frame is None or getattr(frame, name) is None]
         if absent:
             raise ValueError(f"The tiles have no {absent[0]} of the view layer {layer.name!r}; draw them again.")
@@ -143,7 +97,7 @@ def _hand_over_given(engine, depsgraph) -> None:
         hand_over(engine, layer, view, frame)
 
 
-def _picture(engine, depsgraph, resources: _Resources, settings, turn: tuple[int, int]) -> tuple[Frame, Notes]:
+def _picture(engine, depsgraph, resources: Resources, settings, turn: tuple[int, int]) -> tuple[Frame, Notes]:
     """Draw the picture of the engine's active view, number `turn[0]` of `turn[1]`."""
     scene, notes = depsgraph.scene, Notes()
     # while the shutter is open, a marker may make another camera the scene's; the picture is this one's
@@ -161,11 +115,11 @@ def _picture(engine, depsgraph, resources: _Resources, settings, turn: tuple[int
     target = None if engine.is_preview else target_of(getattr(scene, RENDER_SETTINGS))
     begun, first = perf_counter(), None
     resources.targets.promise = None
-    if target or _exchange.drawn_by:
+    if target or exchanged().drawn_by:
         first = exported, seen = read()
         drawing = Drawing(resources.renderer, exported, seen.cropped(*part) if part else seen, settings, told)
-        if _exchange.drawn_by:
-            return _exchange.drawn_by(drawing), notes
+        if exchanged().drawn_by:
+            return exchanged().drawn_by(drawing), notes
         settings = resources.targets.settings_for(target, drawing, perf_counter() - begun)
     times = shutter_times(scene, depsgraph.view_layer, settings.samples)
 
@@ -196,7 +150,7 @@ def _left_out_sentence(left_out: Sequence[str]) -> str:
     return f"{left_out[0]}{more} Mend that, or set Broken Objects in the render properties to Warn."
 
 
-def _tell(engine, frame: Frame, notes: Notes, resources: _Resources) -> None:
+def _tell(engine, frame: Frame, notes: Notes, resources: Resources) -> None:
     """Report on a picture to the user and to scripts."""
     notes.add(_FLATTENED, frame.stats["instances_degenerate"])
     notes.add(_COARSE, frame.stats["surfels_coarse"])
@@ -224,7 +178,7 @@ _SHORT = " is coarser than it should be; raise Memory of a Surfel File in the pr
 _FLATTENED = "Objects with a scale of 0 on some axis are left out; give every axis a scale"
 
 
-def _read(depsgraph, resources: _Resources):
+def _read(depsgraph, resources: Resources):
     are_edited, changes = resources.are_images_edited, None if resources.are_images_edited else resources.changes
     geometry = None if changes is None else changes.geometry
     resources.store.begin_frame(geometry, are_edited, are_edited, are_strokes_told=False)
@@ -242,76 +196,9 @@ def report_failure(engine: bpy.types.RenderEngine, error: Exception) -> None:
     """Report an error to Blender, which then writes no file, stops the animation and exits with 1 in background
     mode."""
     if not engine.is_preview:
-        _release_resources()
+        release()
     where = "" if is_worded(error) else f" at {_step!r}"
     engine.report({"ERROR"}, f"Surfel render failed{where}: {sentence_of(error)}")
-
-
-class _Resources:
-    """Resources shared by the frames and view layers of one render.
-
-    They belong to this module and not to the engine's instance, because Blender frees the instance, and calls handlers,
-    without a graphics context. Freeing textures then aborts Blender 4.5 and spoils the next render on 5.2's OpenGL. So
-    they are freed in `render` after the last picture, unless the scene's Persistent Data keeps them. A render that ends
-    before the scene's last frame, because of Esc or a shorter range, also leaves them to the next render.
-
-    are_images_edited: whether images may have been edited since the last picture. changes: what evaluations changed
-    since the scene was last read; None: anything. most: surfels of a sampled mesh.
-    """
-
-    def __init__(self, most: int | None = None):
-        self.are_images_edited = False
-        self.store = SurfelStore()
-        self.live_meshes = LiveMeshes(most)
-        self.targets = Targets()
-        self.renderer = Renderer(open_device("blender"))
-        self.changes: Changes | None = None
-        self._engine: ref | None = None
-
-    def note_changes(self, engine: bpy.types.RenderEngine, depsgraph: bpy.types.Depsgraph) -> None:
-        """Remember what an evaluation changed: Blender forgets it with the next one. The depsgraph is an engine's own;
-        nothing is known of what came before it."""
-        is_followed = self._engine is not None and self._engine() is engine
-        self._engine = ref(engine)
-        self.changes = self.changes | changes_of(depsgraph) if is_followed and self.changes is not None else None
-
-
-_resources: _Resources | None = None
-
-
-@unattended("Looking for edited images")
-def _before_render(*_) -> None:
-    """Look again at all images: Blender does not tell what was edited since the last render."""
-    matcap_images.doubt()
-    if _resources:
-        _resources.are_images_edited = True
-
-
-def _acquire_resources() -> _Resources:
-    global _resources
-    _resources = _resources or _Resources()
-    _resources.renderer.device.most_bytes = most_bytes()
-    return _resources
-
-
-def _release_resources() -> None:
-    global _resources
-    if _resources:
-        _resources.renderer.release()
-    _resources = None
-
-
-def _is_last_of_render(engine, depsgraph) -> bool:
-    scene = depsgraph.scene
-    later_frames = engine.is_animation and scene.frame_current + scene.frame_step <= scene.frame_end
-    if later_frames and not _ARE_FRAMES_NAMED:
-        return False
-    layers = [layer.name for layer in scene.view_layers if layer.use]
-    return scene.render.use_single_layer or depsgraph.view_layer.name in layers[-1:]
-
-
-#: `blender --background -f 1,5` treats each of its frames as an animation, and none as the last.
-_ARE_FRAMES_NAMED = bool({"-f", "--render-frame"} & set(sys.argv))
 
 
 #: What the render is doing.
@@ -329,5 +216,3 @@ def _progress(engine, turn: tuple[int, int], done: float, step: str) -> bool:
     _tell_step(engine, step.title())
     return not engine.test_break()
 
-
-register, unregister = with_handlers((bpy.app.handlers.render_init, _before_render))

@@ -14,7 +14,7 @@ from ...trade import Choice
 from ...trade.page import magma
 from ...whole_files import write_whole
 from ..doors import register_classes_factory, unattended, with_handlers
-from ..engine.final_render import exchange, exchanging
+from ..engine.exchange import exchange, exchanging
 from ..engine.measuring import Measuring, forget_measurements, measured
 from ..ids import ENGINE, MEASURE, RENDER_SETTINGS, SAVE_MEASURED, SHOW_DIFFERENCE, USE_MEASURED
 from ..spoken import said

@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 import pytest
 
-from splat_addon.blender.engine import final_render
+from splat_addon.blender.engine import render_resources
 from splat_addon.rendering.upload import storages
 
 
@@ -111,14 +111,14 @@ def test_surfels_under_unchanging_modifiers_are_uploaded_once(two, frames, uploa
 
 def test_everything_is_let_go_after_the_last_frame(two, frames):
     frames()
-    assert final_render._resources is None
+    assert render_resources._kept is None
 
 
 @pytest.mark.parametrize("step", [2, 5])
 def test_everything_is_let_go_when_steps_miss_the_last_frame(step, two, scene):
     scene.frame_start, scene.frame_end, scene.frame_step = 1, 4, step
     bpy.ops.render.render(animation=True)
-    assert final_render._resources is None
+    assert render_resources._kept is None
 
 
 @pytest.mark.skipif(bpy.app.version < (5, 0, 0), reason="the operator has no range of frames before Blender 5.0")
@@ -128,19 +128,19 @@ def test_a_part_of_the_frames_leaves_no_harm_to_the_next_render(two, scene, pict
     bpy.ops.render.render(animation=True, frame_start=1, frame_end=2)
     scene.frame_set(1)
     assert np.array_equal(picture(), expected)
-    assert final_render._resources is None
+    assert render_resources._kept is None
 
 
 def test_everything_is_let_go_after_a_still(two, picture):
     picture()
-    assert final_render._resources is None
+    assert render_resources._kept is None
 
 
 def test_everything_is_let_go_when_a_frame_fails(two, scene, frames):
     scene.camera.data.type, scene.camera.data.panorama_type = "PANO", "MIRRORBALL"
     with pytest.raises(RuntimeError, match="Mirror Ball"):
         frames()
-    assert final_render._resources is None
+    assert render_resources._kept is None
 
 
 def test_everything_is_let_go_when_a_later_frame_fails(two, scene, frames):
@@ -151,7 +151,7 @@ def test_everything_is_let_go_when_a_later_frame_fails(two, scene, frames):
     data.keyframe_insert("clip_start", frame=2)
     with pytest.raises(RuntimeError, match="near 2000"):
         frames()
-    assert final_render._resources is None
+    assert render_resources._kept is None
 
 
 def test_view_layers_share_what_lies_on_the_device(two, scene, frames, uploads):
@@ -159,4 +159,4 @@ def test_view_layers_share_what_lies_on_the_device(two, scene, frames, uploads):
     scene.view_layers.new("Not rendered").use = False
     frames()
     assert len(uploads) == 2
-    assert final_render._resources is None
+    assert render_resources._kept is None

@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 import pytest
 
-from splat_addon.blender.engine import final_render
+from splat_addon.blender.engine import render_resources
 
 FAST = 8.0  # units a frame; a unit is a pixel
 
@@ -186,7 +186,7 @@ def test_the_frame_is_restored_after_a_failure(scene, flat_camera, add_surfels, 
     with pytest.raises(RuntimeError, match="Clip distances"):
         picture()
     assert (scene.frame_current, scene.frame_subframe) == (10, 0)
-    assert final_render._resources is None
+    assert render_resources._kept is None
 
 
 @pytest.mark.parametrize("shutter", [np.nan, np.inf])
@@ -235,4 +235,4 @@ def test_every_frame_of_an_animation_is_the_still_of_its_moment(
     for number, still in zip((9, 10, 11), stills, strict=True):
         np.testing.assert_array_equal(read_picture(tmp_path / f"frame_{number:04d}.exr"), still)
     assert not np.array_equal(stills[0], stills[1])
-    assert final_render._resources is None
+    assert render_resources._kept is None

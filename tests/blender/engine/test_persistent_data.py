@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 import pytest
 
-from splat_addon.blender.engine import final_render
+from splat_addon.blender.engine import final_render, render_resources
 from splat_addon.rendering.upload import storages
 
 
@@ -24,7 +24,7 @@ def persistent(scene, picture):
     yield scene
     scene.render.use_persistent_data = False
     picture()
-    assert final_render._resources is None
+    assert render_resources._kept is None
 
 
 def test_surfels_are_uploaded_once_for_all_renders(persistent, add_camera, add_surfels, picture, uploads):
@@ -32,7 +32,7 @@ def test_surfels_are_uploaded_once_for_all_renders(persistent, add_camera, add_s
     add_surfels([(0, 0, 0), (1, 1, 0)], size=0.5)
     first = picture()
     np.testing.assert_array_equal(picture(), first)
-    assert first.any() and len(uploads) == 1 and final_render._resources is not None
+    assert first.any() and len(uploads) == 1 and render_resources._kept is not None
 
 
 def test_what_changed_is_seen(persistent, add_camera, add_surfels, picture, uploads):
@@ -89,5 +89,5 @@ def test_a_failure_lets_everything_go(persistent, add_camera, add_surfels, pictu
     camera.data.clip_start = 2000
     with pytest.raises(RuntimeError, match="near 2000"):
         picture()
-    assert final_render._resources is None
+    assert render_resources._kept is None
     camera.data.clip_start = 0.1

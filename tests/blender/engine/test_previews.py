@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 import pytest
 
-from splat_addon.blender.engine import final_render
+from splat_addon.blender.engine import final_render, render_resources
 
 
 @pytest.fixture
@@ -40,9 +40,9 @@ def test_a_preview_leaves_the_last_picture_as_it_was(scene, add_camera, add_surf
     add_camera()
     add_surfels([(0, 0, 0)], size=1.0)
     before = picture()
-    kept, stats = final_render._resources, dict(final_render.last_frame_stats)
+    kept, stats = render_resources._kept, dict(final_render.last_frame_stats)
     preview((0.5, 0.5, 0.5))
-    assert final_render._resources is kept is not None and final_render.last_frame_stats == stats
+    assert render_resources._kept is kept is not None and final_render.last_frame_stats == stats
     assert np.array_equal(picture(), before)
     scene.render.use_persistent_data = False
     picture()
@@ -54,7 +54,7 @@ def test_the_progress_of_several_views_ends_at_1(scene, monkeypatch):
     monkeypatch.setattr(final_render, "_picture", lambda *about: (turns.append(about[-1]), None))
     monkeypatch.setattr(final_render, "hand_over", lambda *about: None)
     resources = SimpleNamespace(renderer=SimpleNamespace(release=lambda: None))
-    monkeypatch.setattr(final_render, "_Resources", lambda most: resources)  # Blender 4.5 draws inside a render alone
+    monkeypatch.setattr(final_render, "Resources", lambda most: resources)  # Blender 4.5 draws inside a render alone
     engine = SimpleNamespace(
         is_preview=True, get_result=lambda: SimpleNamespace(views=views), active_view_set=lambda view: None
     )
