@@ -8,6 +8,7 @@ from typing import NamedTuple
 import bpy
 from bpy.props import EnumProperty, FloatProperty, PointerProperty, StringProperty
 
+from .density import Density, Measure
 from .density_properties import (
     DENSITIES,
     normal_fields_property,
@@ -24,12 +25,12 @@ from .registration import OVERRIDABLE, with_property
 from .scan_color_settings import ScanColorProperties
 from .style_properties import SurfelObjectStyle
 
-#: density -> the property of `MeshSamplingProperties` that holds its number, and the kind of density.
+#: density -> the property of `MeshSamplingProperties` that holds its number, and what that counts.
 NUMBERED = {
-    "AUTOMATIC": ("mesh_pixels", "automatic"),
-    "RESOLUTION": ("mesh_resolution", "resolution"),
-    "SPACING": ("mesh_spacing", "spacing"),
-    "CAMERA": ("mesh_pixels", "pixels"),
+    "AUTOMATIC": ("mesh_pixels", Measure.AUTOMATIC),
+    "RESOLUTION": ("mesh_resolution", Measure.RESOLUTION),
+    "SPACING": ("mesh_spacing", Measure.SPACING),
+    "CAMERA": ("mesh_pixels", Measure.PIXELS),
 }
 
 
@@ -111,12 +112,11 @@ def looks_of_meshes(scene: bpy.types.Scene) -> dict[str, bool]:
     return {"texture_mapped": properties.mesh_textures, "normal_fields": properties.mesh_normal_fields}
 
 
-def density_of_meshes(scene: bpy.types.Scene) -> dict[str, float]:
-    """The density at which meshes are sampled: {"resolution" | "spacing" (world units) | "pixels" | "automatic":
-    number}."""
+def density_of_meshes(scene: bpy.types.Scene) -> Density:
+    """The density at which meshes are sampled; a spacing is in world units."""
     properties = getattr(scene, RENDER_SETTINGS)
-    name, kind = NUMBERED[properties.mesh_density]
-    return {kind: getattr(properties, name)}
+    name, measure = NUMBERED[properties.mesh_density]
+    return Density(measure, getattr(properties, name))
 
 
 class SurfelObjectSettings(ScanColorProperties, bpy.types.PropertyGroup):

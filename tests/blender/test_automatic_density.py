@@ -8,10 +8,11 @@ from mathutils import Matrix
 from splat_addon.blender.conversion import automatic_density, prediction
 from splat_addon.blender.conversion.mesh_conversion import Choices, prepare, sample
 from splat_addon.blender.conversion.mesh_settings import choices
+from splat_addon.blender.density import Density
 from splat_addon.blender.ids import CONVERSION_SETTINGS
 from splat_addon.blender.ui.predicted import prediction as sidebar_text
 
-AUTOMATIC = Choices({"automatic": 1.0})
+AUTOMATIC = Choices(Density("automatic", 1.0))
 
 
 def prepared(source, asked=AUTOMATIC):
@@ -20,7 +21,7 @@ def prepared(source, asked=AUTOMATIC):
 
 
 def test_it_is_the_default():
-    assert choices(getattr(bpy.context.scene, CONVERSION_SETTINGS)).density.keys() == {"automatic"}
+    assert choices(getattr(bpy.context.scene, CONVERSION_SETTINGS)).density.measure == "automatic"
 
 
 def test_without_a_camera_it_is_a_resolution_and_says_so(cube):
@@ -30,7 +31,7 @@ def test_without_a_camera_it_is_a_resolution_and_says_so(cube):
 
 
 def test_it_is_the_cameras_density_where_it_sees_the_object(cube, camera):
-    by_camera = prepared(cube, Choices({"pixels": 1.0})).spacing
+    by_camera = prepared(cube, Choices(Density("pixels", 1.0))).spacing
     found = prepared(cube)
     assert found.spacing == pytest.approx(by_camera) and found.reason == "1 pixels where the camera is nearest"
 
@@ -87,7 +88,7 @@ def test_an_uneven_scale_that_multiplies_surfels_is_named(cube, camera):
     for scale, is_uneven in (((1, 1, 1), False), ((3, 3, 3), False), ((1, 1, 1.5), False), ((4, 0.2, 0.1), True)):
         cube.scale = scale
         assert prepared(cube).reason.endswith(hint) == is_uneven
-    in_world = prepared(cube, Choices({"automatic": 1.0}, space="world"))
+    in_world = prepared(cube, Choices(Density("automatic", 1.0), space="world"))
     assert "uneven" not in in_world.reason
 
 
@@ -101,7 +102,7 @@ def test_the_ceiling_is_named_when_it_applies(cube, camera, monkeypatch):
 
 
 def test_the_ceiling_counts_large_surfels_as_one(cube, camera, monkeypatch):
-    asked = Choices({"automatic": 1.0}, tolerance=0.0, crease_angle=0.3)
+    asked = Choices(Density("automatic", 1.0), tolerance=0.0, crease_angle=0.3)
     wanted = prepared(cube, asked).spacing
     monkeypatch.setattr(automatic_density, "MOST_SURFELS", int(12 / wanted**2))
     assert prepared(cube, asked).spacing == wanted
@@ -113,7 +114,7 @@ def test_the_ceiling_counts_large_surfels_as_one(cube, camera, monkeypatch):
 
 
 def test_an_objects_own_detail_counts(cube, camera):
-    asked = Choices({"automatic": 4.0})
+    asked = Choices(Density("automatic", 4.0))
     one = prepared(cube, asked).spacing
     cube.surfel_splatting.detail = 2
     assert prepared(cube, asked).spacing == pytest.approx(one / 2)
@@ -122,7 +123,7 @@ def test_an_objects_own_detail_counts(cube, camera):
 
 
 def test_the_sidebar_says_the_count_before_and_why(cube, camera, convert):
-    asked = Choices({"automatic": 8.0})
+    asked = Choices(Density("automatic", 8.0))
     sidebar_text(bpy.context, [cube], asked)
     prediction._measure_wanted()
     count, why = sidebar_text(bpy.context, [cube], asked).split("\n")

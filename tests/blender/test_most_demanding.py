@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from splat_addon.blender.conversion import camera_density
-from splat_addon.blender.conversion.camera_density import most_demanding, without_camera
+from splat_addon.blender.conversion.camera_density import most_demanding, seen_spacing
 from splat_addon.sampling import NotSeenError, Outline
 
 SURFACE = Outline(np.random.default_rng(5).uniform(-0.2, 0.2, (50, 3)), 0.01, 0.1)
@@ -14,7 +14,7 @@ SURFACE = Outline(np.random.default_rng(5).uniform(-0.2, 0.2, (50, 3)), 0.01, 0.
 
 def spacing_at(matrix, depsgraph):
     try:
-        return without_camera({"pixels": 1.5}, lambda: SURFACE, matrix, depsgraph)["spacing"]
+        return seen_spacing(1.5, SURFACE, matrix, depsgraph)
     except NotSeenError:
         return np.inf
 
@@ -31,8 +31,8 @@ def test_the_most_demanding_place_is_found_and_one_that_is_not_seen(kind, monkey
     matrices[:, :3, 3] = random.uniform((-6, -6, -9), (6, 6, 9), (300, 3))
     depsgraph = bpy.context.evaluated_depsgraph_get()
     expected = np.array([spacing_at(matrix, depsgraph) for matrix in matrices])
-    asked, find = [], camera_density.without_camera
-    monkeypatch.setattr(camera_density, "without_camera", lambda *given: asked.append(given) or find(*given))
+    asked, find = [], camera_density.seen_spacing
+    monkeypatch.setattr(camera_density, "seen_spacing", lambda *given: asked.append(given) or find(*given))
     found = [spacing_at(matrix, depsgraph) for matrix in most_demanding(1.5, SURFACE, matrices, depsgraph)]
     assert found == [expected.min(), np.inf][: 1 + np.isinf(expected).any()]
     assert 0 < len(asked) < 60

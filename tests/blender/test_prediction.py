@@ -8,12 +8,13 @@ from splat_addon.blender.conversion import prediction
 from splat_addon.blender.conversion.gathering import gather
 from splat_addon.blender.conversion.mesh_conversion import Choices
 from splat_addon.blender.conversion.mesh_settings import choices
+from splat_addon.blender.density import Density
 from splat_addon.blender.ids import CONVERSION_SETTINGS
 from splat_addon.blender.ui.predicted import prediction as sidebar_text
 from splat_addon.blender.ui.predicted import prediction_text
 from splat_addon.sampling import REDUCTIONS, predict_count
 
-PLAIN = Choices({"resolution": 16})
+PLAIN = Choices(Density("resolution", 16))
 
 
 @pytest.fixture
@@ -26,18 +27,18 @@ def known(cube):
 
 
 def test_a_cube_is_predicted_exactly(known):
-    assert known.predict({"resolution": 16}) == (6 * 16 * 16, 2 / 16)
-    assert known.predict({"spacing": 0.25}) == (6 * 8 * 8, 0.25)
+    assert known.predict(Density("resolution", 16)) == (6 * 16 * 16, 2 / 16)
+    assert known.predict(Density("spacing", 0.25)) == (6 * 8 * 8, 0.25)
 
 
 def test_it_is_the_count_that_sampling_predicts(cube):
     cube.modifiers.new("round", "SUBSURF").levels = 3
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    count, spacing = prediction.measure([cube], depsgraph, PLAIN).predict({"resolution": 100})
+    count, spacing = prediction.measure([cube], depsgraph, PLAIN).predict(Density("resolution", 100))
     assert count == predict_count(gather([cube], depsgraph, False).mesh, spacing=spacing)
 
 
-@pytest.mark.parametrize("density", [{"resolution": 0}, {"spacing": 0.0}])
+@pytest.mark.parametrize("density", [Density("resolution", 0), Density("spacing", 0.0)])
 def test_a_setting_of_zero_predicts_nothing(known, density):
     assert known.predict(density) == (0, 0.0)
 
@@ -45,7 +46,7 @@ def test_a_setting_of_zero_predicts_nothing(known, density):
 def test_a_mesh_without_faces_predicts_nothing(add_mesh):
     points = add_mesh("points", [(0, 0, 0)], [])
     extent = prediction.measure([points], bpy.context.evaluated_depsgraph_get(), PLAIN)
-    assert (extent.predict({"resolution": 16})[0], extent.predict({"spacing": 0.1})[0]) == (0, 0)
+    assert (extent.predict(Density("resolution", 16))[0], extent.predict(Density("spacing", 0.1))[0]) == (0, 0)
 
 
 def test_a_sidebar_that_opens_is_drawn_before_the_count_is_measured(cube):
@@ -87,7 +88,7 @@ def test_another_file_forgets_all_counts(cube, known):
 
 
 def test_a_count_predicts_itself(known):
-    assert known.predict({"count": 1500}) == (1500, pytest.approx((24 / 1500) ** 0.5))
+    assert known.predict(Density("count", 1500)) == (1500, pytest.approx((24 / 1500) ** 0.5))
 
 
 @pytest.mark.parametrize("reduction", REDUCTIONS)
@@ -95,14 +96,14 @@ def test_every_reduction_has_its_own_count(cube, reduction):
     cube.rotation_euler = (0.3, 0.5, 0.7)
     bpy.ops.object.transform_apply(rotation=True)
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    extent = prediction.measure([cube], depsgraph, Choices({"resolution": 16}, reduction=reduction))
+    extent = prediction.measure([cube], depsgraph, Choices(Density("resolution", 16), reduction=reduction))
     mesh = gather([cube], depsgraph, False).mesh
-    assert extent.predict({"spacing": 0.1})[0] == predict_count(mesh, spacing=0.1, reduction=reduction)
+    assert extent.predict(Density("spacing", 0.1))[0] == predict_count(mesh, spacing=0.1, reduction=reduction)
 
 
 def test_another_reduction_is_measured_anew(cube, known):
-    assert prediction.known_extents([[cube]], Choices({"resolution": 16}, reduction="none")) is None
-    assert prediction.known_extents([[cube]], Choices({"spacing": 0.5})) == [known]
+    assert prediction.known_extents([[cube]], Choices(Density("resolution", 16), reduction="none")) is None
+    assert prediction.known_extents([[cube]], Choices(Density("spacing", 0.5))) == [known]
 
 
 def test_the_text_sums_over_the_selected_meshes():
@@ -119,7 +120,7 @@ def test_the_text_says_when_the_count_is_still_to_come(cube):
 
 
 def test_for_a_camera_the_text_has_the_count_of_the_conversion(cube, camera, convert):
-    asked = Choices({"pixels": 8.0})
+    asked = Choices(Density("pixels", 8.0))
     sidebar_text(bpy.context, [cube], asked)
     prediction._measure_wanted()
     text = sidebar_text(bpy.context, [cube], asked)
@@ -139,9 +140,9 @@ def test_the_text_knows_the_objects_own_detail(cube, known):
 def test_for_a_camera_that_sees_nothing_the_text_says_so(cube, camera):
     camera.rotation_euler = (3.1, 0, 0)
     bpy.context.view_layer.update()
-    sidebar_text(bpy.context, [cube], Choices({"pixels": 1.0}))
+    sidebar_text(bpy.context, [cube], Choices(Density("pixels", 1.0)))
     prediction._measure_wanted()
-    assert "does not see the object" in sidebar_text(bpy.context, [cube], Choices({"pixels": 1.0}))
+    assert "does not see the object" in sidebar_text(bpy.context, [cube], Choices(Density("pixels", 1.0)))
 
 
 def test_the_text_says_less_where_flat_only_if_a_tolerance_may_merge_what_is_not(cube):
@@ -172,7 +173,7 @@ def test_large_surfels_are_predicted_where_faces_are_flat_and_have_no_image(has_
     material = bpy.data.materials.new("look")
     material.use_nodes = True
     cube.data.materials.append(material)
-    asked = Choices({"resolution": 100}, tolerance=0.0, crease_angle=0.3)
+    asked = Choices(Density("resolution", 100), tolerance=0.0, crease_angle=0.3)
 
     def predicted():
         bpy.context.view_layer.update()

@@ -18,7 +18,7 @@ from mathutils import Matrix
 
 from ...sampling import NotSeenError, Outline
 from .animation import is_moving
-from .camera_density import without_camera
+from .camera_density import seen_spacing
 from .density_reason import Reason
 from .placement import is_uneven
 
@@ -73,9 +73,9 @@ def automatic_spacing(
     moves = any(map(is_moving, (*sources, depsgraph.scene.camera)))
     margin = MOTION_MARGIN if moves else 1.0
     try:
-        asked = {"pixels": pixels / margin / detail}
-        spacing = without_camera(asked, surface, matrix_world, depsgraph)["spacing"]
-        basis = f"{asked['pixels']:.3g} pixels where the camera is nearest"
+        asked = pixels / margin / detail
+        spacing = seen_spacing(asked, surface(), matrix_world, depsgraph)
+        basis = f"{asked:.3g} pixels where the camera is nearest"
         basis += f", {margin:g} times finer as something moves" if moves else ""
         if is_uneven(matrix_world, MOST_UNEVEN):
             basis += "; its scale is uneven, which multiplies surfels: apply it, or choose Space > World"

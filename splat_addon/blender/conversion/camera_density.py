@@ -13,34 +13,40 @@ from ...rendering import Camera, Panorama
 from ...rendering.assembly.panorama_faces import cube_views
 from ...sampling import NotSeenError, Outline, camera_spacing, least_camera_spacings
 from ..cameras import final_camera
+from ..density import Density, Measure
 
 
 def without_camera(
-    density: dict[str, float], surface: Callable[[], Outline], matrix_world: Matrix, depsgraph: bpy.types.Depsgraph
-) -> dict[str, float]:
-    """Convert a density that refers to the camera: {"pixels": p} becomes a spacing in object units.
-
-    surface: returns the outline of the object, and is called only if needed. matrix_world: of the object. Raises
-        ValueError with a sentence if there is no camera, or it does not see the object.
-    """
-    if "pixels" not in density:
+    density: Density, surface: Callable[[], Outline], matrix_world: Matrix, depsgraph: bpy.types.Depsgraph
+) -> Density:
+    """The density, or if it counts pixels the `seen_spacing` of those. surface: returns the outline of the object."""
+    if density.measure != Measure.PIXELS:
         return density
+    return Density(Measure.SPACING, seen_spacing(density.value, surface(), matrix_world, depsgraph))
+
+
+def seen_spacing(pixels: float, surface: Outline, matrix_world: Matrix, depsgraph: bpy.types.Depsgraph) -> float:
+    """The spacing in object units at which a surfel covers so many pixels where the camera is nearest.
+
+    surface: outline of the object. matrix_world: of the object. Raises ValueError with a sentence if there is no
+        camera, or it does not see the object.
+    """
     spacings, unseen = [], None
     for view in _views(depsgraph):
         try:
             to_view = view.world_to_view() @ np.array(matrix_world, np.float64)
-            spacings.append(camera_spacing(surface(), density["pixels"], object_to_view=to_view, **_picture(view)))
+            spacings.append(camera_spacing(surface, pixels, object_to_view=to_view, **_picture(view)))
         except NotSeenError as error:
             unseen = error
     if not spacings:
         raise unseen
-    return {"spacing": min(spacings)}
+    return min(spacings)
 
 
 def most_demanding(
     pixels: float, surface: Outline, matrices: np.ndarray, depsgraph: bpy.types.Depsgraph
 ) -> list[np.ndarray]:
-    """Of the places of an object, the one for which `without_camera` finds the smallest spacing, and one that the
+    """Of the places of an object, the one for which `seen_spacing` finds the smallest spacing, and one that the
     camera does not see, as far as there are such; the first place if there is no camera. matrices: (n, 4, 4) float64.
     """
     try:
@@ -58,7 +64,7 @@ def most_demanding(
         if least[row] >= smallest or np.isinf(least[row]):
             break
         try:
-            spacing = without_camera({"pixels": pixels}, lambda: surface, matrices[row], depsgraph)["spacing"]
+            spacing = seen_spacing(pixels, surface, matrices[row], depsgraph)
         except NotSeenError:
             unseen = unseen or [matrices[row]]
             continue

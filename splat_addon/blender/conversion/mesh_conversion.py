@@ -34,10 +34,11 @@ from ...sampling import (
     sample_surface,
 )
 from ...surfels import Surfels
+from ..density import Density, Measure
 from ..materials.baking import Bakeable, baked, baked_otherwise
 from ..materials.material_surfaces import Unread
 from ..meshes.mesh_extraction import read_mesh, unread_sentences
-from ..object_detail import detail_of, finer
+from ..object_detail import detail_of
 from .automatic_density import automatic_spacing
 from .camera_density import without_camera
 from .changing_shape import is_deformed
@@ -63,8 +64,6 @@ _LEAST_SAVED = 0.01
 class Choices:
     """The user's settings for a conversion. `mesh_settings.choices` fills all; those left out are of plain surfels.
 
-    density: one keyword and value: "resolution", "spacing" or "count" as in sampling; "pixels" that a surfel may cover
-        in the scene's camera; or "automatic", the same pixels within limits (`automatic_density`).
     reduction, grazing_angle: as in sampling.
     splat_size: half-axis of a splat, in spacings.
     tolerance: how far from flat, in object units, the surface may be where surfels become larger; 0: only inside flat
@@ -77,7 +76,7 @@ class Choices:
     bake: whether inputs of materials that cannot be read come from Blender's own bake.
     """
 
-    density: dict[str, float]
+    density: Density
     splat_size: float = SamplingOptions.splat_size
     reduction: str = SamplingOptions.reduction
     grazing_angle: float = SamplingOptions.grazing_angle
@@ -91,7 +90,7 @@ class Choices:
 
     @property
     def asks_camera(self) -> bool:
-        return not self.density.keys().isdisjoint(("pixels", "automatic"))
+        return self.density.asks_camera
 
     @property
     def in_world_units(self) -> bool:
@@ -179,19 +178,9 @@ def prepare(
     skipped = [f"{count:,} triangle{'s' * (count > 1)} {reason}" for reason, count in dropped.items()]
     if not len(mesh):
         raise ValueError(f"The mesh has no usable faces, only {', '.join(skipped)}; repair it first.")
-    how = {"reduction": choices.reduction, "grazing_angle": choices.grazing_angle}
-    detail, reason = detail_of(sources[0]), ""
     flat = cache(lambda: flat_places(mesh, choices, sources, gathered.unread))
-    if "automatic" in choices.density:
-        area, longest_edge = projected_area(mesh, **how), grid_spacing(mesh, resolution=1)
-        what = choices.density["automatic"], lambda: outline(mesh), area, longest_edge
-        about = matrix_world, depsgraph, sources, detail, lambda spacing: flat().saved(spacing)
-        spacing, why = automatic_spacing(*what, *about)
-        reason = str(why) if why else ""
-    else:
-        density = without_camera(finer(choices.density, detail), lambda: outline(mesh), matrix_world, depsgraph)
-        spacing = grid_spacing(mesh, **density, **how)
-    predicted = predict_count(mesh, spacing=spacing, **how)
+    spacing, reason = _spacing(mesh, matrix_world, sources, choices, depsgraph, lambda spacing: flat().saved(spacing))
+    predicted = predict_count(mesh, spacing=spacing, **_kept_samples(choices))
     if predicted > MAX_SURFELS:
         predicted -= round(flat().saved(spacing))
     if predicted > MAX_SURFELS:
@@ -220,6 +209,40 @@ def prepare(
         _deforms(sources),
         reason,
     )
+
+
+def _spacing(
+    mesh: TriangleMesh,
+    matrix_world: Matrix,
+    sources: list[bpy.types.Object],
+    choices: Choices,
+    depsgraph: bpy.types.Depsgraph,
+    saved: Callable[[float], float],
+) -> tuple[float, str]:
+    """The spacing of surfels on a usable mesh, and the explanation of an automatic one. saved: as of
+    `automatic_spacing`."""
+    kept, detail = _kept_samples(choices), detail_of(sources[0])
+    if choices.density.measure != Measure.AUTOMATIC:
+        density = choices.density.finer(detail)
+        density = without_camera(density, lambda: outline(mesh), matrix_world, depsgraph)
+        return grid_spacing(mesh, **density.option, **kept), ""
+    spacing, reason = automatic_spacing(
+        choices.density.value,
+        lambda: outline(mesh),
+        projected_area(mesh, **kept),
+        grid_spacing(mesh, resolution=1),
+        matrix_world,
+        depsgraph,
+        sources,
+        detail,
+        saved,
+    )
+    return spacing, str(reason) if reason else ""
+
+
+def _kept_samples(choices: Choices) -> dict:
+    """The options of sampling that decide which samples are kept."""
+    return {"reduction": choices.reduction, "grazing_angle": choices.grazing_angle}
 
 
 def stray_triangles(count: int) -> str:

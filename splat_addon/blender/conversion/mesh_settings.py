@@ -18,6 +18,7 @@ from ...sampling import (
     error_at,
     pixels_for,
 )
+from ..density import Density, Measure
 from ..density_properties import (
     DENSITIES,
     normal_fields_property,
@@ -191,19 +192,18 @@ def choices(properties: ConversionProperties) -> Choices:
     )
 
 
-def _tolerance(properties: ConversionProperties, density: dict[str, float]) -> float | None:
+def _tolerance(properties: ConversionProperties, density: Density) -> float | None:
     """The tolerance for larger surfels, or None if all have the same size. Those inside flat faces alone, which a
     tolerance of 0 asks for, need blend depths; where samples are merged or counted, none replaces others."""
     are_possible = properties.clips_edges and REDUCTIONS[properties.reduction.lower()].merge is None
-    is_wanted = properties.tolerance > 0 or (are_possible and "count" not in density)
+    is_wanted = properties.tolerance > 0 or (are_possible and density.measure != Measure.COUNT)
     return properties.tolerance if properties.use_adaptive and is_wanted else None
 
 
-def _density(properties: ConversionProperties) -> dict[str, float]:
-    """The kind of density and its number."""
+def _density(properties: ConversionProperties) -> Density:
     chosen = chosen_density(properties)
     name = DENSITIES[chosen].property
-    return {"automatic" if chosen == "AUTOMATIC" else name: getattr(properties, name)}
+    return Density(Measure.AUTOMATIC if chosen == "AUTOMATIC" else Measure(name), getattr(properties, name))
 
 
 def chosen_density(properties: ConversionProperties) -> str:

@@ -25,6 +25,7 @@ from ...sampling import (
     outline,
     projected_area,
 )
+from ..density import Density, Measure
 from ..doors import unattended, with_handlers
 from ..geometry.sources import has_surfaces
 from ..meshes.mesh_extraction import read_without_pixels
@@ -53,21 +54,20 @@ class Extent:
     flat: FlatExtents = NO_FLAT_EXTENTS
     others: frozenset[int] = frozenset()
 
-    def predict(self, density: dict[str, float]) -> tuple[int, float]:
+    def predict(self, density: Density) -> tuple[int, float]:
         """(surfels, spacing) for a resolution, spacing or count; both 0 if that is 0 or nothing is usable."""
-        ((kind, value),) = density.items()
-        spacing = _SPACINGS[kind](self, value) if value > 0 else 0.0
+        spacing = _SPACINGS[density.measure](self, density.value) if density.value > 0 else 0.0
         return (round(self.area / spacing**2 - self.flat.saved(spacing)), spacing) if spacing > 0 else (0, 0.0)
 
 
 #: The extent of an object that cannot be converted.
 NOTHING = Extent(0.0, 0.0, Outline(np.zeros((0, 3)), 0.0, 0.0))
 
-#: kind of density -> spacing from the extent and a value above 0
+#: spacing from the extent and a value above 0
 _SPACINGS = {
-    "resolution": lambda extent, value: extent.longest_edge / value,
-    "spacing": lambda extent, value: value,
-    "count": lambda extent, value: math.sqrt(extent.area / value),
+    Measure.RESOLUTION: lambda extent, value: extent.longest_edge / value,
+    Measure.SPACING: lambda extent, value: value,
+    Measure.COUNT: lambda extent, value: math.sqrt(extent.area / value),
 }
 
 
@@ -107,11 +107,11 @@ def _key(sources: list[bpy.types.Object], choices: Choices) -> tuple:
     except ValueError:
         places = ()
     uids = tuple(source.session_uid for source in sources)
-    how = choices.reduction, choices.grazing_angle, choices.asks_camera, choices.in_world_units
+    plain = uids, places, choices.reduction, choices.grazing_angle, choices.asks_camera, choices.in_world_units
     if choices.tolerance is None:
-        return uids, places, *how
+        return plain
     looks = tuple(_look(slot.material) for source in sources for slot in source.material_slots)
-    return uids, places, *how, looks, choices.texture_mapped, choices.bake
+    return *plain, looks, choices.texture_mapped, choices.bake
 
 
 def _look(material: bpy.types.Material | None) -> tuple:

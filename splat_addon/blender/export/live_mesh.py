@@ -13,6 +13,7 @@ from ...rendering import Polygons
 from ...rendering.scene import Placed, placed_at
 from ...sampling import DeformingSurfels, TriangleMesh
 from ...surfels import Surfels
+from ..density import Density
 from ..materials.surface_textures import kept_maps
 from ..mesh_sampling_settings import Form
 from .holdouts import with_holes
@@ -55,7 +56,7 @@ class LiveMesh:
     deforming: DeformingSurfels | None = None
     spacing: float = 0.0
     looks: dict[str, bool] = field(default_factory=dict)
-    density: dict[str, float] = field(default_factory=dict)
+    density: Density | None = None
     settled: tuple[TriangleMesh | None, tuple] = (None, ())
     shown: tuple[Surfels, Surfels] | None = None
     drawn: tuple[TriangleMesh, tuple[Polygons, ...]] | None = None

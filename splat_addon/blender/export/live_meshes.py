@@ -26,11 +26,11 @@ from ...surfels import Surfels
 from ..conversion.animation import is_moving
 from ..conversion.camera_density import views_told
 from ..conversion.mesh_conversion import MAX_SURFELS, stray_triangles
+from ..density import Density
 from ..geometry.sources import mesh_key
 from ..materials.surface_textures import MAPS
 from ..mesh_sampling_settings import Form
 from ..meshes.mesh_polygons import left_out_of_polygons, mesh_polygons, needs_surfels
-from ..object_detail import finer
 from .changes import Changes
 from .live_mesh import LiveMesh
 from .live_sampling import deforming_surfels, spacing_for
@@ -104,7 +104,7 @@ class LiveMeshes:
         return not changes.geometry.isdisjoint(names) or not changes.materials.isdisjoint(read.made_of)
 
     def instances(
-        self, depsgraph: bpy.types.Depsgraph, density: dict[str, float], looks: dict[str, bool], notes
+        self, depsgraph: bpy.types.Depsgraph, density: Density, looks: dict[str, bool], notes
     ) -> tuple[list[Instance], list[PolygonInstance]]:
         """All instances added to this frame; the places of one mesh share its surfels or polygons. looks: options of
         sampling by name, see `looks_of_meshes`."""
@@ -131,7 +131,7 @@ class LiveMeshes:
         return sampled, drawn
 
     def _sampled_instances(self, live: LiveMesh, depsgraph, density, looks: dict[str, bool]) -> list[Instance]:
-        sampled = self._sampled(live, depsgraph, finer(density, live.detail), looks)
+        sampled = self._sampled(live, depsgraph, density.finer(live.detail), looks)
         if live.shown is None or live.shown[0] is not sampled:
             parts = live.read.parts
             whole = joined_at_edges(sampled, *parts, live.spacing) if parts else sampled
@@ -171,7 +171,7 @@ class LiveMeshes:
         return (*name, number)
 
     def _sampled(
-        self, live: LiveMesh, depsgraph: bpy.types.Depsgraph, density: dict[str, float], looks: dict[str, bool]
+        self, live: LiveMesh, depsgraph: bpy.types.Depsgraph, density: Density, looks: dict[str, bool]
     ) -> Surfels:
         """The sampling of a mesh. Raises ValueError with a sentence if it cannot be sampled."""
         if looks != live.looks:

@@ -11,7 +11,8 @@ import numpy as np
 
 from ...sampling import DeformingSurfels, NotSeenError, TriangleMesh, grid_spacing, projected_area
 from ..conversion.automatic_density import automatic_spacing
-from ..conversion.camera_density import most_demanding, without_camera
+from ..conversion.camera_density import most_demanding, seen_spacing
+from ..density import Density, Measure
 from .live_mesh import LiveMesh
 
 #: A sampling is kept until it is coarser or finer than requested by more than this factor.
@@ -33,7 +34,7 @@ def deforming_surfels(
     return DeformingSurfels(mesh, spacing=spacing, deforms=bends, **looks, **edges)
 
 
-def spacing_for(live: LiveMesh, density: dict[str, float], depsgraph: bpy.types.Depsgraph, views: tuple) -> float:
+def spacing_for(live: LiveMesh, density: Density, depsgraph: bpy.types.Depsgraph, views: tuple) -> float:
     """Spacing in a mesh's own units: as fine as its most demanding place requests, or unchanged if that is close
     enough, or if nothing changed. views: the cameras of the depsgraph, as a value."""
     if density != live.density:
@@ -41,8 +42,7 @@ def spacing_for(live: LiveMesh, density: dict[str, float], depsgraph: bpy.types.
     asked = live.detail, live.matrices.tobytes(), views
     if live.deforming is not None and live.settled[0] is live.read.whole and live.settled[1] == asked:
         return live.spacing
-    ((kind, value),) = density.items()
-    spacing = _SPACINGS[kind](live, value, depsgraph)
+    spacing = _SPACINGS[density.measure](live, density.value, depsgraph)
     live.settled = live.read.whole, asked
     return spacing
 
@@ -66,7 +66,7 @@ def _by_camera(live: LiveMesh, pixels: float, depsgraph: bpy.types.Depsgraph) ->
     surface, spacings = live.read.outline, []
     for matrix in most_demanding(pixels, surface, live.matrices, depsgraph):
         try:
-            spacings.append(without_camera({"pixels": pixels}, lambda: surface, matrix, depsgraph)["spacing"])
+            spacings.append(seen_spacing(pixels, surface, matrix, depsgraph))
         except NotSeenError:
             continue
     if spacings:
@@ -85,5 +85,10 @@ def _by_itself(live: LiveMesh, pixels: float, depsgraph: bpy.types.Depsgraph) ->
     return _kept_if_near(live, min(spacing(matrix, depsgraph, detail=live.detail).spacing for matrix in matrices))
 
 
-#: kind of density -> function of a mesh, the number and the depsgraph that returns the spacing
-_SPACINGS = {"resolution": _by_resolution, "spacing": _by_spacing, "pixels": _by_camera, "automatic": _by_itself}
+#: what is counted -> function of a mesh, the number and the depsgraph that returns the spacing
+_SPACINGS = {
+    Measure.RESOLUTION: _by_resolution,
+    Measure.SPACING: _by_spacing,
+    Measure.PIXELS: _by_camera,
+    Measure.AUTOMATIC: _by_itself,
+}

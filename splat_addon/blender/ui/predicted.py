@@ -13,7 +13,8 @@ from ..conversion.density_reason import Reason, sentences
 from ..conversion.gathering import frame_of, groups
 from ..conversion.mesh_conversion import Choices
 from ..conversion.prediction import Extent, known_extents
-from ..object_detail import detail_of, finer
+from ..density import Density, Measure
+from ..object_detail import detail_of
 from ..spoken import said
 
 
@@ -33,13 +34,13 @@ def prediction(context: bpy.types.Context, sources: list[bpy.types.Object], aske
     return "\n".join([text, *sentences(reason for _, reason in found if reason)])
 
 
-def _density_of(sources, extent: Extent, asked: Choices, depsgraph) -> tuple[dict[str, float], Reason | None]:
+def _density_of(sources, extent: Extent, asked: Choices, depsgraph) -> tuple[Density, Reason | None]:
     """The density in the form that `Extent.predict` takes, and the reason if it is automatic. Raises ValueError."""
     detail, frame = detail_of(sources[0]), frame_of(sources[0], asked.in_world_units)
-    if "automatic" not in asked.density:
-        return without_camera(finer(asked.density, detail), lambda: extent.surface, frame, depsgraph), None
+    if asked.density.measure != Measure.AUTOMATIC:
+        return without_camera(asked.density.finer(detail), lambda: extent.surface, frame, depsgraph), None
     spacing, reason = automatic_spacing(
-        asked.density["automatic"],
+        asked.density.value,
         lambda: extent.surface,
         extent.area,
         extent.longest_edge,
@@ -49,7 +50,7 @@ def _density_of(sources, extent: Extent, asked: Choices, depsgraph) -> tuple[dic
         detail,
         extent.flat.saved,
     )
-    return {"spacing": spacing}, reason
+    return Density(Measure.SPACING, spacing), reason
 
 
 def prediction_text(predictions: list[tuple[int, float]]) -> str:

@@ -7,6 +7,7 @@ import pytest
 
 from splat_addon.blender.conversion.batch import ConversionBatch
 from splat_addon.blender.conversion.mesh_conversion import Choices
+from splat_addon.blender.density import Density
 from splat_addon.blender.export.light_linking import receivers_of
 
 
@@ -253,7 +254,7 @@ def test_undo_takes_the_surfels_back(cube):
 
 
 def test_a_cancelled_batch_adds_nothing(cube):
-    batch = ConversionBatch([cube], Choices({"resolution": 64}))
+    batch = ConversionBatch([cube], Choices(Density("resolution", 64)))
     data_before = len(bpy.data.objects), len(bpy.data.meshes)
 
     def cancel(share):
@@ -267,7 +268,7 @@ def test_a_cancelled_batch_adds_nothing(cube):
 
 def test_progress_rises_to_the_end_over_all_sources(add_square):
     shares = []
-    batch = ConversionBatch([add_square(name) for name in "abc"], Choices({"resolution": 64}))
+    batch = ConversionBatch([add_square(name) for name in "abc"], Choices(Density("resolution", 64)))
     for conversion in batch.prepared(bpy.context):
         batch.sample(conversion, shares.append)
     assert shares == sorted(shares) and shares[-1] == 1.0 and shares[0] < 0.4

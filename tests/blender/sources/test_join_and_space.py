@@ -7,6 +7,7 @@ import pytest
 
 from splat_addon.blender.conversion import prediction
 from splat_addon.blender.conversion.mesh_conversion import Choices
+from splat_addon.blender.density import Density
 from splat_addon.blender.ui.predicted import prediction as sidebar_text
 
 
@@ -126,12 +127,12 @@ def predicted(sources, asked):
 
 
 @pytest.mark.parametrize("choices", [{"join": True}, {"space": "world"}, {"space": "object"}], ids=str)
-@pytest.mark.parametrize("density", [{"spacing": 0.125}, {"resolution": 48}, {"count": 5000}], ids=str)
+@pytest.mark.parametrize("density", [("spacing", 0.125), ("resolution", 48), ("count", 5000)], ids=str)
 def test_the_count_before_is_the_count_after(red_and_mirrored_blue, convert, choices, density):
     sources = list(red_and_mirrored_blue)
-    ((kind, value),) = density.items()
+    kind, value = density
     settings = {name: value.upper() if name == "space" else value for name, value in choices.items()}
-    before = predicted(sources, Choices(density, **choices))
+    before = predicted(sources, Choices(Density(*density), **choices))
     made = convert(density=kind.upper(), **{kind: value}, **settings, use_adaptive=False)
     assert sum(len(m.data.vertices) for m in made) == pytest.approx(before, rel=0.02)
 
@@ -142,10 +143,10 @@ def test_the_count_follows_the_scale_in_world_space_only(select):
     for space in ("object", "world"):
         cube.scale = (1, 1, 1)
         bpy.context.view_layer.update()
-        counts[space] = [predicted([cube], Choices({"spacing": 0.25}, space=space))]
+        counts[space] = [predicted([cube], Choices(Density("spacing", 0.25), space=space))]
         cube.scale = (2, 2, 2)
         bpy.context.view_layer.update()
-        counts[space].append(predicted([cube], Choices({"spacing": 0.25}, space=space)))
+        counts[space].append(predicted([cube], Choices(Density("spacing", 0.25), space=space)))
     assert counts == {"object": [384, 384], "world": [384, 1536]}
 
 
@@ -157,7 +158,7 @@ def test_the_count_of_a_collection_instance_follows_what_is_in_it(select):
     instancer.instance_type, instancer.instance_collection = "COLLECTION", hidden
     bpy.context.scene.collection.objects.link(instancer)
     bpy.context.view_layer.update()
-    asked = Choices({"spacing": 0.25})
+    asked = Choices(Density("spacing", 0.25))
     assert predicted([instancer], asked) == 384
     cube.scale = (2, 2, 2)
     bpy.context.view_layer.update()
