@@ -47,7 +47,7 @@ class Resources:
         self.changes = self.changes | changes_of(depsgraph) if is_followed and self.changes is not None else None
 
 
-#: Those of the render that is going on, or of the last one, if it left them.
+#: The resources of the render that is going on, or of the last one, if it left them.
 _kept: Resources | None = None
 
 
