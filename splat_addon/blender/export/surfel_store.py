@@ -61,9 +61,7 @@ class SurfelStore:
         self._followed: dict = {}
         self._columns: dict[tuple[int, str], Column | None] = {}
 
-    def get(
-        self, points: Points, key: int, name: str, offset: np.ndarray, is_solid: bool = False
-    ) -> Stored:
+    def get(self, points: Points, key: int, name: str, offset: np.ndarray, is_solid: bool = False) -> Stored:
         """The result of `attributes.read_stored`; read once per mesh and frame. There may be no surfels yet.
 
         key: session_uid of the mesh or point cloud, or of the mesh that the points were made beside.

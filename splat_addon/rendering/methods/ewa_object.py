@@ -11,5 +11,6 @@ METHOD = Method(
     rasterizer="object_space",
     writes_depth=True,
     widens=True,
+    seems_nearer=17.0,  # as EWA: its planes go on for 16 radii beyond their splats
     printed_variance=1.0,  # "a typical choice" for the low-pass's matrix "is the identity"
 )
