@@ -13,9 +13,11 @@ from typing import NamedTuple
 import numpy as np
 
 from ..surfels import Surfels
+from .scene.boxes import corner_by_corner, joined
 from .scene.camera import Camera
 from .scene.far_reaching import box_corners, seen_places
-from .scene.table import FromEye, InstanceTable
+from .scene.from_eye import FromEye
+from .scene.table import InstanceTable
 
 #: The clip range extends beyond the bounds by this fraction of its ends (for a parallel camera, of its length or
 #: window), so that rounding clips nothing.
@@ -112,20 +114,20 @@ def depth_extent(table: InstanceTable, camera: Camera, epsilon: float, epsilon_l
 def seen_by(table: InstanceTable, camera: Camera) -> Seen:
     """The instances that may be in the picture. Of far-reaching triangles, the boxes are those of what is in the view
     volume."""
-    firm, from_eye = table.firm, table.firm.from_eye(camera)
-    inside = ~are_outside(from_eye.corners, camera)
-    if len(firm.reaching):
-        corners = from_eye.corners.copy()
-        for row in firm.reaching.tolist():
-            places = seen_places(firm.placed[row], camera)
+    firm, found = table.firm, []
+    for part in firm.parts():
+        corners = part.from_eye(camera).corners
+        inside = ~are_outside(corners, camera)
+        for row in part.reaching.tolist():
+            places = seen_places(part.placed[row], camera)
             inside[row] = len(places) > 0
             if len(places):
                 corners[row] = box_corners(places)
-        from_eye = from_eye._replace(corners=corners)
-    outside, degenerate = len(firm) - int(inside.sum()), len(table) - len(firm)
-    if not outside:
-        return Seen(firm, from_eye, 0, degenerate)
-    return Seen(firm.taken(inside), from_eye.taken(inside), outside, degenerate)
+        found.append((inside, corners if inside.all() else corner_by_corner(corners, inside)))
+    inside, corners = zip(*found, strict=True)
+    inside = np.concatenate(inside)
+    seen, outside = firm.taken(inside), len(firm) - int(inside.sum())
+    return Seen(seen, FromEye(seen, camera, joined(corners)), outside, len(table) - len(firm))
 
 
 def are_outside(corners: np.ndarray, camera: Camera) -> np.ndarray:

@@ -8,6 +8,7 @@ silhouette filter turn the numbers of all samples around into shares.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -18,6 +19,7 @@ from .methods import get_method
 from .passes.decisions import numbered
 from .plan.frame_plan import FILTER_MARGIN, FramePlan
 from .scene import Placed, Scene
+from .scene.placements import Placements, joined
 
 INDICES = ("object_index", "material_index")
 
@@ -32,31 +34,37 @@ class Identities:
     scene: Scene
 
     @property
-    def _placed(self) -> tuple[Placed, ...]:
-        return *self.scene.surfels, *self.scene.polygons
+    def _placed(self) -> Placements:
+        return joined(self.scene.surfels, self.scene.polygons)
 
-    @cached_property
-    def _numbered(self) -> tuple[Placed, ...]:
-        """Each instance once, in the order of their numbers (`InstanceTable.slots`)."""
-        return tuple(dict.fromkeys(self._placed))
+    def _of_numbers(self, values: Callable[[Placed], list[float]], dtype: type) -> np.ndarray:
+        """(n,) a value of each number, in the order of `InstanceTable.slots`. values: for each material of a
+        prototype; 0 for nothing."""
+        placed = self._placed
+        each = [np.array(values(one), dtype) for one in placed.prototypes]
+        is_first = placed.first_ones == np.arange(len(placed))
+        return np.concatenate([np.zeros(1, dtype), *(each[row] for row in placed.of[is_first].tolist())])
 
     @cached_property
     def indices(self) -> dict[str, np.ndarray]:
         """(n,) float32 pass index of each number's object, and of its material."""
-        objects = [0, *(instance.index for instance in self._numbered for _ in instance.materials)]
-        materials = [0, *(material.index for instance in self._numbered for material in instance.materials)]
-        return {"object_index": np.array(objects, np.float32), "material_index": np.array(materials, np.float32)}
+        return {
+            "object_index": self._of_numbers(lambda one: [one.index] * len(one.materials), np.float32),
+            "material_index": self._of_numbers(lambda one: [each.index for each in one.materials], np.float32),
+        }
 
     @cached_property
     def names(self) -> dict[str, int]:
         """Names of all instances -> their hashes."""
-        return {name: name_hash(name) for name in dict.fromkeys(placed.name for placed in self._placed)}
+        placed = self._placed
+        rows = np.unique(placed.of, return_index=True)[1]
+        names = (placed.prototypes[row].name for row in placed.of[np.sort(rows)].tolist())
+        return {name: name_hash(name) for name in dict.fromkeys(names)}
 
     @cached_property
     def hashes(self) -> np.ndarray:
         """(n,) uint32 hash of each number's name; 0 for nothing."""
-        of_numbers = (self.names[instance.name] for instance in self._numbered for _ in instance.materials)
-        return np.array([0, *of_numbers], np.uint32)
+        return self._of_numbers(lambda one: [self.names[one.name]] * len(one.materials), np.uint32)
 
 
 class Identified:

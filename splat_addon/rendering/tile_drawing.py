@@ -16,7 +16,7 @@ from .plan.graph import Pause, Texture
 from .plan.shared import Shared
 from .plan.tile import TileContext, texture_key
 from .scene.camera import Camera
-from .scene.table import Kinds
+from .scene.kinds import Kinds
 from .statistics import counted
 from .upload.resources import Resources, TextureKey
 

@@ -17,7 +17,8 @@ from ..surfels import Surfels
 from .depth_range import ClipRange, clipped, picture_bounds, seen_by
 from .scene import Placed
 from .scene.camera import Camera
-from .scene.table import FromEye, InstanceTable
+from .scene.from_eye import FromEye
+from .scene.table import InstanceTable
 
 #: Visibility moves every splat back by at least this many steps of the depth buffer: rounding in the rasterizer's
 #: interpolation is one or two steps.
@@ -89,7 +90,8 @@ class Items:
                 return self
             rows = np.flatnonzero(rows)
         each = (array[rows] for array in (self.hides_backs, self.overlaps, self.split_distances))
-        return Items(self.table.taken(rows), self.from_eye.taken(rows), self.scale, *each, self.setback)
+        table = self.table.taken(rows)
+        return Items(table, self.from_eye.taken(rows, table), self.scale, *each, self.setback)
 
     def of_kinds(self, which: Callable[[Placed], bool]) -> Items:
         """The items of those kinds for which a function of one instance is true."""

@@ -10,6 +10,7 @@ import numpy as np
 
 from ...rendering import Instance
 from ...rendering.scene import placed_at
+from ...rendering.scene.placements import Placements, joined, placements
 from ..conversion.color_watch import out_of_date
 from ..conversion.placement import finite_matrix
 from ..conversion.series import why_not_shown
@@ -64,7 +65,7 @@ class EntryKinds:
         light_sets: LightSets,
         notes: Notes,
     ):
-        self.surfels: list[Instance] = []
+        self.surfels = placements(())
         self._depsgraph, self._live_meshes, self._light_sets, self._notes = depsgraph, live_meshes, light_sets, notes
         self._override = override_of(depsgraph)
         self._of_surfels = SurfelInstances(depsgraph, store, self._override)
@@ -114,7 +115,8 @@ class EntryKinds:
         except ValueError:  # of some of them, which are found
             for kind, row in surfels:
                 try:
-                    self.surfels += _placed([(part, row) for part in kind.surfels], matrices)
+                    own = _placed([(part, row) for part in kind.surfels], matrices)
+                    self.surfels = joined(self.surfels, own)
                 except ValueError as error:
                     self._notes.leave_out(kind.name, error)
 
@@ -156,7 +158,7 @@ class EntryKinds:
             notes.add(ABOUT_BARE_POINTS)
 
 
-def _placed(parts: list[tuple[Instance, int]], matrices: np.ndarray) -> list[Instance]:
+def _placed(parts: list[tuple[Instance, int]], matrices: np.ndarray) -> Placements:
     """Instances at the places of entries. parts: placed in the space of an entry, and the row of its matrix."""
     moved = [matrices[row] @ part.matrix_world if part.stream is not None else matrices[row] for part, row in parts]
     return placed_at([part for part, _ in parts], np.array(moved))

@@ -11,6 +11,7 @@ import numpy as np
 
 from ...rendering import Polygons
 from ...rendering.scene import Placed, placed_at
+from ...rendering.scene.placements import Placements, placements
 from ...sampling import DeformingSurfels, TriangleMesh
 from ...surfels import Surfels
 from ..density import Density
@@ -91,21 +92,24 @@ class LiveMesh:
         manners = {key: each._replace(form=each.form.of_surfels) for key, each in manners.items()}
         self.places = [Place(matrix, manners[id(manner)]) for matrix, manner in self.places]
 
-    def placed(self, made: Callable[..., Placed], places: list[Place]) -> list[Placed]:
+    def placed(self, made: Callable[..., Placed], places: list[Place]) -> Placements:
         """Instances at places. made: makes one of them from its fields, once for each manner."""
-        parts, which, matrices = {}, [], []
+        parts, pixels, rows, of, matrices = [], [], {}, [], []
         for matrix, manner in places:
-            if id(manner) not in parts:
+            if id(manner) not in rows:
                 materials, distance = manner.style.on(self.read.materials), manner.form.split_distance
                 instance = made(materials=materials, split_distance=distance, **manner.traits._asdict())
-                parts[id(manner)] = [(part, manner) for part in with_holes(instance, self.read.held)]
-            for part in parts[id(manner)]:
-                which.append(part)
+                own = with_holes(instance, self.read.held)
+                rows[id(manner)] = range(len(parts), len(parts) + len(own))
+                parts += own
+                pixels += [manner.form.split_pixels] * len(own)
+            for row in rows[id(manner)]:
+                of.append(row)
                 matrices.append(matrix)
-        instances = placed_at([part for part, _ in which], np.array(matrices))
-        if not any(manner.form.split_pixels for each in parts.values() for _, manner in each):
+        instances = placed_at(parts, np.array(matrices), np.array(of, int))
+        if not any(pixels):
             return instances
-        return [self._split(one, manner.form.split_pixels) for one, (_, manner) in zip(instances, which, strict=True)]
+        return placements(self._split(one, pixels[row]) for one, row in zip(instances, of, strict=True))
 
     def _split(self, placed: Placed, pixels: float | None) -> Placed:
         if pixels is None:

@@ -16,6 +16,7 @@ import bpy
 
 from ...rendering import Instance, PolygonInstance
 from ...rendering.detail.hierarchies import replaced
+from ...rendering.scene.placements import Placements, joined
 from ...sampling import (
     STRETCHED_SHARE,
     have_same_values,
@@ -105,7 +106,7 @@ class LiveMeshes:
 
     def instances(
         self, depsgraph: bpy.types.Depsgraph, density: Density, looks: dict[str, bool], notes
-    ) -> tuple[list[Instance], list[PolygonInstance]]:
+    ) -> tuple[Placements, Placements]:
         """All instances added to this frame; the places of one mesh share its surfels or polygons. looks: options of
         sampling by name, see `looks_of_meshes`."""
         sampled, drawn = [], []
@@ -122,15 +123,15 @@ class LiveMeshes:
                 if live.sampled_at and len(read.sampled_part):
                     if read.strays:
                         notes.add(f"{live.owner}: left out of its surfels are {stray_triangles(read.strays)}")
-                    sampled += self._sampled_instances(live, depsgraph, density, looks)
+                    sampled.append(self._sampled_instances(live, depsgraph, density, looks))
                 if live.drawn_at and len(read.drawn_part):
-                    drawn += self._polygon_instances(live, notes)
+                    drawn.append(self._polygon_instances(live, notes))
             except Exception as error:
                 notes.leave_out(live.owner, error)
         self._kept = {name: live for name, live in self._kept.items() if name in self._names}
-        return sampled, drawn
+        return joined(*sampled), joined(*drawn)
 
-    def _sampled_instances(self, live: LiveMesh, depsgraph, density, looks: dict[str, bool]) -> list[Instance]:
+    def _sampled_instances(self, live: LiveMesh, depsgraph, density, looks: dict[str, bool]) -> Placements:
         sampled = self._sampled(live, depsgraph, density.finer(live.detail), looks)
         if live.shown is None or live.shown[0] is not sampled:
             parts = live.read.parts
@@ -143,7 +144,7 @@ class LiveMeshes:
         self.counts["surfels"] += len(live.shown[1])
         return live.placed(partial(Instance, live.shown[1], textures=textures), live.sampled_at)
 
-    def _polygon_instances(self, live: LiveMesh, notes) -> list[PolygonInstance]:
+    def _polygon_instances(self, live: LiveMesh, notes) -> Placements:
         mesh = live.read.drawn_part
         if live.drawn is None or not have_same_values(live.drawn[0], mesh):
             live.drawn = mesh, mesh_polygons(mesh)
@@ -152,11 +153,9 @@ class LiveMeshes:
         for sentence in left_out_of_polygons(live.owner, mesh):
             notes.add(sentence)
         looked_up = {field: live.looked_up(field) for field in MAPS}
-        return [
-            instance
-            for shape in live.drawn[1]
-            for instance in live.placed(partial(PolygonInstance, shape, **looked_up), live.drawn_at)
-        ]
+        return joined(
+            *(live.placed(partial(PolygonInstance, shape, **looked_up), live.drawn_at) for shape in live.drawn[1])
+        )
 
     def _lasting_key(self, evaluated: bpy.types.Object, group: str) -> tuple:
         """A key that identifies the same mesh in the next frame, after it has been evaluated again.

@@ -11,6 +11,7 @@ import bpy
 import numpy as np
 
 from ...rendering import Scene
+from ...rendering.scene.placements import joined
 from ..geometry.attributes import since_written
 from ..mesh_sampling_settings import density_of_meshes, looks_of_meshes
 from . import passed_over
@@ -41,7 +42,8 @@ def export_scene(depsgraph: bpy.types.Depsgraph, store: SurfelStore, live_meshes
         depsgraph, density_of_meshes(bpy_scene), looks_of_meshes(bpy_scene), notes
     )
     lights = (replace(light, receivers=light_sets.lit_by(number)) for number, light in enumerate(lights))
-    scene = Scene((*kinds.surfels, *sampled), tuple(lights), polygons=tuple(polygons), light_probes=tuple(probes))
+    surfels = joined(kinds.surfels, sampled)
+    scene = Scene(surfels, tuple(lights), polygons=polygons, light_probes=tuple(probes))
     world = _world_of(depsgraph)
     try:
         return store.world.around(scene, world, notes), notes

@@ -26,7 +26,7 @@ class NearAndFar:
     """The scenes for the views that one renderer draws: the same objects as long as a view stays."""
 
     def __init__(self):
-        self._of_scene: tuple[Scene, np.ndarray, list[Placed]] | None = None
+        self._of_scene: tuple[Scene, list[Placed]] | None = None
         self._scenes: dict[tuple, tuple[Scene, Scene]] = {}
         self._apart: WeakKeyDictionary = WeakKeyDictionary()
         self._near: WeakKeyDictionary = WeakKeyDictionary()
@@ -36,9 +36,9 @@ class NearAndFar:
         table = scene.table
         if self._of_scene is None or self._of_scene[0] is not scene:
             stray = table.taken(table.of_kinds(lambda placed: len(self._parts(placed)) > 1))
-            self._of_scene = scene, _lengths(table), list(stray.placed)
-        least, (_, lengths, stray) = least_length(camera), self._of_scene
-        reach = [table.placed[row] for row in np.flatnonzero(lengths > least).tolist()]
+            self._of_scene = scene, list(stray.placed)
+        least, (_, stray) = least_length(camera), self._of_scene
+        reach = [table.placed[row] for row in _long(table, least).tolist()]
         if not (reach or stray):
             return scene
         key = id(scene), camera.matrix_world.tobytes(), camera.near, camera.is_orthographic, least
@@ -89,7 +89,9 @@ class NearAndFar:
         return of_shape[key]
 
 
-def _lengths(table: InstanceTable) -> np.ndarray:
-    """(n,) the length of each one's longest triangle, or more, world units; 0 of surfels and of what is flattened."""
+def _long(table: InstanceTable, least: float) -> np.ndarray:
+    """(k,) rows of instances that may have a triangle longer than this, world units, and are not flattened."""
     longest = np.array([shape.longest_edge if isinstance(shape, Polygons) else 0.0 for shape in table.shapes])
-    return np.where(table.are_flattened, 0.0, table.stretches[:, 0] * longest[table.shape_of])
+    if not longest.any():
+        return np.zeros(0, np.int64)
+    return np.flatnonzero((table.stretches * longest[table.shape_of] > least) & ~table.are_flattened)

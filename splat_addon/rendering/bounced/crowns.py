@@ -67,7 +67,7 @@ def crowns_of(scene: Scene) -> BouncedLight:
         if all(len(after.cells) == len(before.cells) for (after, *_), (before, *_) in zip(pooled, crowns, strict=True)):
             break
         crowns = pooled
-    edge = max((crown.edge * float(np.median(table.stretches[rows, 0])) for crown, _, rows in crowns), default=0.0)
+    edge = max((crown.edge * float(np.median(table.stretches[rows])) for crown, _, rows in crowns), default=0.0)
     if not edge > 0:
         none = np.zeros((0, 3))
         return BouncedLight(np.zeros(3), 1.0, none.astype(int), np.zeros(0, int), none, np.zeros(0))

@@ -54,27 +54,28 @@ def points_of(scene: Scene, solid: np.ndarray, chooser: Chooser) -> Iterator[Poi
     """Points of everything in the scene, at most a cube apart; of these, those that are chosen. solid: as of
     `are_solid`."""
     table, edge = scene.table, chooser.edge
-    for kind in np.unique(table.kind_of).tolist():
-        rows = np.flatnonzero((table.kind_of == kind) & ~table.are_flattened)
+    kind_of, matrices, light_sets = table.kind_of, table.matrices, table.light_sets
+    for kind in np.unique(kind_of).tolist():
+        rows = np.flatnonzero((kind_of == kind) & ~table.are_flattened)
         if not len(rows):
             continue
         placed = table.every_kind[kind]
-        largest = rows[table.stretches[rows, 0].argmax()]
-        places = places_in(placed, table.matrices[largest, :3, :3], edge)
+        largest = rows[table.stretches[rows].argmax()]
+        places = places_in(placed, matrices[largest, :3, :3], edge)
         if not (opaque := are_opaque(placed, places)).all():
             places = places.taken(opaque)
         if len(rows) > 1:
-            places = thinned(places, edge / float(table.stretches[largest, 0]))
+            places = thinned(places, edge / float(table.stretches[largest]))
         step = max(_AT_ONCE // max(len(places), 1), 1)
         for first in range(0, len(rows), step):
             some = rows[first : first + step]
-            yield _placed_points(placed, places, table.matrices[some], table.light_sets[some], solid[some], chooser)
+            yield _placed_points(placed, places, matrices[some], light_sets[some], solid[some], chooser)
 
 
 def _placed_points(
     placed: Placed, places: Places, matrices: np.ndarray, light_sets: np.ndarray, solid: np.ndarray, chooser: Chooser
 ) -> Points:
-    """The points of instances with these (m, 4, 4) matrices."""
+    """The points of instances with these (m, 3, 4) matrices."""
     linear, count = matrices[:, :3, :3], max(len(places), 1)
     shift = linear @ np.asarray(placed.shape.origin) + matrices[:, :3, 3]
     scaled = linear / np.abs(linear).max(axis=(1, 2), keepdims=True)  # products of tiny numbers would vanish

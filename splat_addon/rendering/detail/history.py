@@ -56,7 +56,7 @@ def history(scene: Scene, drawn: WeakSet[Surfels]) -> History:
 def _large_sets(scene: Scene) -> Iterator[Surfels]:
     """The sets of which all instances together have many surfels."""
     table = scene.table
-    counts = np.bincount(table.shape_of, minlength=len(table.shapes)) * table.sizes[:, 0]
+    counts = np.bincount(table.shape_of, minlength=len(table.shapes)) * table.prototypes.sizes[:, 0]
     for row in np.flatnonzero(counts >= hierarchies.LEAST_SURFELS).tolist():
         if isinstance(table.shapes[row], Surfels):
             yield table.shapes[row]

@@ -103,7 +103,7 @@ def _spared(surfels: Surfels, instances: InstanceTable, camera: Camera, toleranc
     ahead, step = instances.from_eye(camera).model_views[:, 2], max(len(surfels) // of_each, 1)
     spacing = surfels.scales[::step].min(axis=1) / SAMPLE_SIZE
     depth = -(ahead[:, :3] @ surfels.positions[::step].T + ahead[:, 3:])
-    pixels = spacing * camera.pixels_per_unit() * instances.stretches[:, :1]
+    pixels = spacing * camera.pixels_per_unit() * instances.stretches[:, None]
     if not camera.is_orthographic:
         pixels = pixels / np.maximum(depth, camera.near)
     merged = (_CUT_SPACING * pixels / tolerance) ** 2

@@ -115,7 +115,7 @@ def may_step(instance: Instance, count: int) -> bool:
 
 def chosen_steps(steps: Steps, items: Items, camera: Camera, tolerance: float, is_depth_only: bool) -> np.ndarray:
     """(n,) the coarsest level of each that is off by at most so many pixels at its nearest point; -1 if none is."""
-    pixels = camera.pixels_per_unit() * items.table.stretches[:, 0]
+    pixels = camera.pixels_per_unit() * items.table.stretches
     if not camera.is_orthographic:
         # merged surfels must not touch the near plane, where methods may treat splats differently
         pixels = np.where(items.nearest > camera.near, pixels / np.maximum(items.nearest, camera.near), np.inf)

@@ -69,7 +69,7 @@ class Streamed:
         for everything. needs_whole: the sets of earlier views stay until all that this one needs is read.
         """
         self.is_waiting, self.short, self.unread = False, (), ()
-        streams = {instance.stream: 0 for instance in scene.surfels if instance.stream is not None}
+        streams = {one.stream: 0 for one in scene.surfels.different if one.stream is not None}
         if not streams:
             self._coming.clear()
             return scene

@@ -19,7 +19,7 @@ from ..methods import get_method
 from ..passes.decisions import merging
 from ..plan.graph import Part, Pass, Texture, of_samples
 from ..plan.hosts import Host
-from ..scene.table import Kind
+from ..scene.kinds import Kind
 from ..view import DrawItem, Items
 
 CONSTANTS = {"COVER_CELL": COVER_CELL}

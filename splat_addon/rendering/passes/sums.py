@@ -12,9 +12,9 @@ from ..plan.graph import Part, Texture
 from ..plan.hosts import BLENDED, Kind
 from ..plan.planning import Planning, any_of
 from ..scene import Finish, Material, Style
+from ..scene.kinds import Kinds
 from ..scene.lines import Lines
 from ..scene.style import AS_THE_PICTURE
-from ..scene.table import Kinds
 from ..shading_models import ShadingModel
 from ..upload.packing import MAX_FINISHES, shared_emission, shared_material
 from .decisions import lights_samples, shadows

@@ -45,6 +45,6 @@ def check_arrived(tile: TileContext) -> None:
 def _one_of_each_kind(tile: TileContext) -> Iterator[DrawItem]:
     """An instance of each kind of the scene as it is drawn by itself, whole."""
     every = tile.scene.table
-    own = every.taken(np.unique(every.kind_of, return_index=True)[1])
+    own = every.taken(every.first_of_kinds)
     none = np.zeros(len(own))
     return iter(Items(own, own.from_eye(tile.camera), 1.0, none.astype(bool), none, none))

@@ -136,7 +136,7 @@ class CutChoice:
         for kind in items.table.kinds if (chosen >= 0).any() else ():
             rows = items.table.of_kinds(lambda other, own=kind.placed: other is own) & (chosen >= 0)
             if rows.any():
-                radii[rows] = self.steps(kind.placed).radii[chosen[rows]] * items.table.stretches[rows, 0]
+                radii[rows] = self.steps(kind.placed).radii[chosen[rows]] * items.table.stretches[rows]
         return radii
 
     def in_parts(self, placed: DrawItem) -> Iterator[tuple[DrawItem, Cut]]:

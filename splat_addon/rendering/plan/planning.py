@@ -12,7 +12,7 @@ from ..methods import get_method
 from ..probes.places import Probe
 from ..scene import Instance, Placed, PolygonInstance, Scene
 from ..scene.camera import Camera
-from ..scene.table import Kinds
+from ..scene.kinds import Kinds
 from ..settings import Settings
 from ..shading_models import get_shading_model
 from ..shadows.receivers import Viewers

@@ -10,7 +10,7 @@ import numpy as np
 from ..detail import steps as detail
 from ..passes.decisions import merging
 from ..scene import Instance, Placed
-from ..scene.table import Kinds
+from ..scene.kinds import Kinds
 from ..upload.pools import MOST_POOLED, Pool, may_share
 from ..upload.storages import get_storage
 from ..view import Items

@@ -12,11 +12,12 @@ import numpy as np
 from ..assembly.panorama_faces import panorama_frame
 from ..contents import contents
 from ..frame import Frame
-from ..scene import Scene
+from ..scene import Placed, Scene
 from ..scene.camera import Camera
 from ..scene.glass_surfaces import GlassSurfaces
 from ..scene.octahedral import Octahedral
 from ..scene.panorama import Panorama
+from ..scene.placements import Placements
 from ..settings import Settings
 from ..shadows.receivers import Viewers
 from .glass import GlassApart, surfaces_of
@@ -142,13 +143,19 @@ def _panorama(scene: Scene, probe: Probe, size: tuple[int, int]) -> Panorama:
 
 def _left_out(scene: Scene, rows: tuple[int, ...]) -> Scene:
     """The scene of which reflections are seen, where what is in these rows of its table only casts its shadow."""
-    left_out = {id(scene.table.placed[row]) for row in rows}
+    left_out = {scene.table.placed[row] for row in rows}
     if not left_out and all(kind.placed.is_seen == kind.placed.is_reflected for kind in scene.table.kinds):
         return scene
 
-    def of(placed) -> tuple:
-        shown = (one.is_reflected and id(one) not in left_out for one in placed)
+    def of(placed: Placements) -> Placements | tuple[Placed, ...]:
+        if not left_out:
+            return placed.changed(lambda one: _seen(one, one.is_reflected))
+        shown = (one.is_reflected and one not in left_out for one in placed)
         pairs = zip(placed, shown, strict=True)
-        return tuple(one if one.is_seen == is_seen else replace(one, is_seen=is_seen) for one, is_seen in pairs)
+        return tuple(_seen(*pair) for pair in pairs)
 
     return replace(scene, surfels=of(scene.surfels), polygons=of(scene.polygons))
+
+
+def _seen(placed: Placed, is_seen: bool) -> Placed:
+    return placed if placed.is_seen == is_seen else replace(placed, is_seen=is_seen)

@@ -11,6 +11,7 @@ import numpy as np
 from ..scene import Placed, Scene
 from ..scene.glass_surfaces import GlassSurfaces
 from ..scene.material import Material
+from ..scene.placements import Placements
 from ..scene.table import InstanceTable
 
 
@@ -59,7 +60,12 @@ class GlassApart:
             )
         return known[key]
 
-    def _parted(self, placed: tuple[Placed, ...], changes: dict[str, bool]) -> tuple[Placed, ...]:
+    def _parted(self, placed: Placements, changes: dict[str, bool]) -> Placements | tuple[Placed, ...]:
+        are_mixed = any(_shows_glass(one) and isinstance(self._parts(one), tuple) for one in placed.different)
+        if not are_mixed:
+            return placed.changed(
+                lambda one: replace(one, **changes) if _shows_glass(one) and self._parts(one) else one
+            )
         made = []
         for one in placed:
             parts = _shows_glass(one) and self._parts(one)

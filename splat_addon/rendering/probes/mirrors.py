@@ -40,18 +40,18 @@ def mirror_of(scene: Scene, camera: Camera, around: tuple[Camera, ...] = ()) -> 
     are_glossy = glossy(table)
     if not are_glossy.any():
         return None, 0
-    middles, axes = boxes(table)
+    corners, (middles, axes) = table.world_corners, boxes(table)
     lengths = np.sort(np.linalg.norm(axes, axis=2), axis=1)
     are_flat = (lengths[:, 0] <= FLATTEST * lengths[:, 2]) & (lengths[:, 1] > FLATTEST * lengths[:, 2])
     rows = [
         row
         for row in np.flatnonzero(are_glossy & are_flat)
-        if any(_may_see(one, table.world_corners[row]) for one in (camera, *around))
+        if any(_may_see(one, corners[row]) for one in (camera, *around))
     ]
     if not rows:
         return None, 0
     row = max(rows, key=lambda row: lengths[row, 1] * lengths[row, 2])
-    if not _may_see(camera, table.world_corners[row]):
+    if not _may_see(camera, corners[row]):
         return None, len(rows) - 1
     return _mirror(table, row, middles[row], axes[row], camera), len(rows) - 1
 

@@ -3,7 +3,8 @@
 
 from .finish import Finish
 from .material import GlossTexture, Material, NormalTexture, SurfaceTexture
-from .placed import Instance, Paint, Placed, PolygonInstance, placed_at
+from .placed import Instance, Paint, Placed, PolygonInstance
+from .placements import placed_at
 from .scene import Scene
 from .style import LineStyle, Style
 

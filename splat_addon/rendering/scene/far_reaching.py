@@ -11,11 +11,11 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
+from .boxes import CORNERS
 from .camera import Camera
 from .convex import divided, fans, kept
 from .placed import PolygonInstance
 from .polygons import Polygons
-from .table import CORNERS
 
 #: A triangle is cut if it is longer than this many times its distance from the eye, or in a parallel view the longest
 #: side of the window. Float32 then places what is near on others within 2^-17 of its distance, and shadow

@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, fields, replace
+from collections.abc import Callable
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import ClassVar, NamedTuple
 
@@ -13,12 +13,13 @@ import numpy as np
 from ...quaternions import quaternion_axes
 from ...streaming import Stream
 from ...surfels import Surfels
+from .boxes import CORNERS
 from .camera import Camera
 from .light import MAX_LIGHT_SETS
 from .material import GlossTexture, Material, NormalTexture, SurfaceTexture
 from .numbers import MAX_INDEX, MAX_LENGTH, MIN_LENGTH, check_lengths, check_range
 from .polygons import Polygons
-from .table import CORNERS, FLATTEST
+from .table import FLATTEST
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,8 +63,6 @@ class Placed:
     is_merged: ClassVar[bool] = False
     #: surfels never do
     reaches: ClassVar[bool] = False
-    #: what it was copied from by `placed_at`
-    copied_from: ClassVar[Placed | None] = None
 
     def __post_init__(self):
         if self.light_set not in range(MAX_LIGHT_SETS):
@@ -272,23 +271,3 @@ class PolygonInstance(Placed):
     def is_closed(self) -> bool:
         """Like `Placed.is_closed`, but never true with holes, through which backs may be visible."""
         return not self.is_cut_out and super().is_closed
-
-
-def placed_at(placed: Sequence[Placed], matrices: np.ndarray) -> list[Placed]:
-    """Copies of n instances at other places, which are checked together and not one by one.
-
-    placed: the same object for instances that differ in their places only. matrices: (n, 4, 4) `matrix_world` of each.
-    Raises ValueError with a sentence for numbers that no instance may have.
-    """
-    matrices = np.array(matrices, np.float64).reshape(-1, 4, 4)
-    are_usable = (np.abs(matrices) <= MAX_LENGTH).all(axis=(1, 2))
-    for row in np.flatnonzero(~are_usable)[:1]:
-        replace(placed[row], matrix_world=matrices[row])  # raises what is wrong
-    matrices.flags.writeable = False
-    values = {one: {f.name: getattr(one, f.name) for f in fields(one)} for one in set(placed)}
-    made = []
-    for one, matrix in zip(placed, matrices, strict=True):
-        copied = object.__new__(type(one))
-        copied.__dict__.update(values[one], matrix_world=matrix, copied_from=one)
-        made.append(copied)
-    return made

@@ -6,15 +6,18 @@ Plain values without Blender: `blender/export/scene.py` makes a `Scene` from a d
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, fields
 from functools import cached_property
 
+from ...surfels import Shape
 from .environment import Environment
 from .light import Light
 from .light_probe import LightProbe
 from .numbers import check_radiance
 from .picture_sun import PictureSun
 from .placed import Instance, Placed, PolygonInstance
+from .placements import Placements, joined, placements
 from .table import InstanceTable, make_table
 
 
@@ -22,7 +25,8 @@ from .table import InstanceTable, make_table
 class Scene:
     """Everything that a picture depends on except camera and settings.
 
-    surfels: `Instance`s, or bare `Surfels` placed at the world origin.
+    surfels: `Instance`s, or bare `Surfels` placed at the world origin; kept as `Placements`, as `placed_at` makes them
+        of thousands.
     world: (3,) scene-linear radiance of the background, which lights every surface.
     environment: an image of the surroundings, multiplied by `world`.
     polygons: `PolygonInstance`s, or bare `Polygons`, among the surfels.
@@ -33,11 +37,11 @@ class Scene:
     light_probes: where glossy objects see their surroundings from; others do from their own middle.
     """
 
-    surfels: tuple[Instance, ...] = ()
+    surfels: Placements = ()
     lights: tuple[Light, ...] = ()
     world: tuple[float, float, float] = (0.0, 0.0, 0.0)
     environment: Environment | None = None
-    polygons: tuple[PolygonInstance, ...] = ()
+    polygons: Placements = ()
     background: tuple[float, float, float] | None = None
     hides_environment: bool = False
     picture_sun: PictureSun | None = None
@@ -45,11 +49,11 @@ class Scene:
 
     def __post_init__(self):
         object.__setattr__(self, "light_probes", tuple(self.light_probes))
-        instances = tuple(s if isinstance(s, Instance) else Instance(s) for s in self.surfels)
-        object.__setattr__(self, "surfels", instances)
         object.__setattr__(self, "lights", tuple(self.lights))
-        among = tuple(p if isinstance(p, PolygonInstance) else PolygonInstance(p) for p in self.polygons)
-        object.__setattr__(self, "polygons", among)
+        surfels, polygons = _placements(self.surfels, Instance), _placements(self.polygons, PolygonInstance)
+        every = joined(surfels, polygons)
+        object.__setattr__(self, "surfels", every[: len(surfels)])
+        object.__setattr__(self, "polygons", every[len(surfels) :])
         object.__setattr__(self, "world", _radiance("world", self.world))
         if self.background is not None:
             object.__setattr__(self, "background", _radiance("background", self.background))
@@ -69,14 +73,20 @@ class Scene:
         return self.world if self.background is None else self.background
 
     @property
-    def shown(self) -> tuple[Placed, ...]:
+    def shown(self) -> Sequence[Placed]:
         """Everything visible, of either kind."""
         return self.table.placed
 
     @cached_property
     def table(self) -> InstanceTable:
         """Everything visible, as arrays."""
-        return make_table((*self.surfels, *self.polygons))
+        return make_table(self.surfels, self.polygons)
+
+
+def _placements(given: Iterable[Placed | Shape], kind: type[Placed]) -> Placements:
+    if isinstance(given, Placements):
+        return given
+    return placements(one if isinstance(one, kind) else kind(one) for one in given)
 
 
 def _radiance(name: str, given) -> tuple[float, ...]:

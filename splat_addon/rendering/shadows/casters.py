@@ -8,9 +8,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..depth_range import are_outside
+from ..scene.boxes import corners_times
 from ..scene.camera import Camera
 from ..scene.light import Light
-from ..scene.table import corners_times
 from .hexahedra import EDGES, face_planes, planes
 from .receivers import FILTER_REACH, Receivers
 

@@ -13,6 +13,7 @@ from operator import attrgetter
 from weakref import ref
 
 from ...hierarchy import Hierarchy
+from ..contents import digest
 from ..scene import Instance, Placed, PolygonInstance
 from ..scene.camera import Camera
 from ..scene.table import InstanceTable
@@ -34,7 +35,6 @@ def contents(table: InstanceTable, maps: Sequence[ShadowMap], levels: Callable[[
     levels: gives the hierarchy of an instance, or None.
     """
     casters = table.casting
-    arrays = casters.matrices, casters.splits, casters.slots, casters.kind_of
     kinds = [(ref(kind.placed.shape), _OF[type(kind.placed)](kind.placed), _levels(levels, kind.placed))
              for kind in casters.kinds]  # fmt: skip
     each_map = [
@@ -44,11 +44,11 @@ def contents(table: InstanceTable, maps: Sequence[ShadowMap], levels: Callable[[
             m.place,
             m.used,
             m.is_smaller,
-            m.casters.numbers.tobytes(),
+            digest(m.casters.numbers),
         )
         for m in maps
     ]
-    return [array.tobytes() for array in arrays], kinds, each_map
+    return digest(*casters.told), kinds, each_map
 
 
 def _levels(levels: Callable[[Instance], Hierarchy | None], placed: Placed) -> ref | None:

@@ -10,10 +10,11 @@ import math
 
 import numpy as np
 
+from ..scene.boxes import corners_times
 from ..scene.camera import Camera, look_at
 from ..scene.far_reaching import highest_over
 from ..scene.light import MAX_SUN_HALF_ANGLE, Light
-from ..scene.table import InstanceTable, corners_times
+from ..scene.table import InstanceTable
 from .high_casters import DEEPEST, comes_down
 from .receivers import Receivers
 

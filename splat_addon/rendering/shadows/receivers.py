@@ -15,10 +15,12 @@ import numpy as np
 
 from ..depth_range import Seen, seen_by, visible_space
 from ..scene import PolygonInstance
+from ..scene.boxes import corners_times
 from ..scene.camera import Camera
 from ..scene.far_reaching import box_corners, seen_places, seen_places_in
+from ..scene.from_eye import FromEye
 from ..scene.light import MAX_SUN_HALF_ANGLE, Light
-from ..scene.table import InstanceTable, corners_times
+from ..scene.table import InstanceTable
 from .hexahedra import places_in_pyramid
 from .strays import among_others, near_things
 
@@ -137,7 +139,7 @@ def _seen_near(table: InstanceTable, camera: Camera) -> tuple[Seen, np.ndarray]:
     is_kept[others] = among_others(seen.table.triangles[others], *depths)
     if is_kept.all():
         return seen, seen.table.world_corners
-    boxes, in_world = seen.from_eye.corners.copy(), seen.table.world_corners.copy()
+    boxes, in_world = seen.from_eye.corners.copy(), seen.table.world_corners
     around = near_things(table, camera) if len(seen.table.reaching) else None
     for row in seen.table.reaching.tolist():
         places, world = seen_places_in(seen.table.placed[row], camera, around)
@@ -145,8 +147,8 @@ def _seen_near(table: InstanceTable, camera: Camera) -> tuple[Seen, np.ndarray]:
         if len(places):
             boxes[row], in_world[row] = box_corners(places), box_corners(world)
     rows = np.flatnonzero(is_kept)
-    from_eye = seen.from_eye._replace(corners=boxes)
-    return seen._replace(table=seen.table.taken(rows), from_eye=from_eye.taken(rows)), in_world[rows]
+    table = seen.table.taken(rows)
+    return seen._replace(table=table, from_eye=FromEye(table, camera, boxes[rows])), in_world[rows]
 
 
 def _least_and_greatest(seen: Seen, rows: np.ndarray, camera: Camera) -> tuple[np.ndarray, np.ndarray]:

@@ -36,8 +36,9 @@ def near_things(table: InstanceTable, camera: Camera) -> tuple[np.ndarray, np.nd
     others = table.firm.taken(np.delete(np.arange(len(table.firm)), table.firm.reaching))
     if not len(others):
         return None
-    distances = np.linalg.norm(others.world_corners - camera.matrix_world[:3, 3], axis=2)
-    boxes = others.world_corners[among_others(others.triangles, distances.min(axis=1), distances.max(axis=1))]
+    corners = others.world_corners
+    distances = np.linalg.norm(corners - camera.matrix_world[:3, 3], axis=2)
+    boxes = corners[among_others(others.triangles, distances.min(axis=1), distances.max(axis=1))]
     low, high = boxes.min(axis=(0, 1)), boxes.max(axis=(0, 1))
     around = np.linalg.norm(high - low)
     return low - around, high + around

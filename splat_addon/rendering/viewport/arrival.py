@@ -11,7 +11,7 @@ from weakref import WeakKeyDictionary, WeakSet
 from ...surfels import Surfels
 from ..detail.stand_in import STAND_IN, stand_in
 from ..renderer import Shown
-from ..scene import Scene
+from ..scene import Instance, Scene
 from ..scene.camera import Camera
 from ..settings import Settings
 from ..upload.loading import Loading, NotYet
@@ -115,7 +115,7 @@ class Arrival:
         for surfels in [surfels for surfels in self._late if not self.loading.is_loading(surfels)]:
             self._late.discard(surfels)
             self._stand_ins.pop(surfels, None)
-        late = frozenset(i.surfels for i in scene.surfels if i.surfels in self._late)
+        late = frozenset(i.surfels for i in scene.surfels.different if i.surfels in self._late)
         if not late:
             self._shown = None
             return scene
@@ -125,7 +125,7 @@ class Arrival:
 
     def _with_few(self, scene: Scene) -> Scene:
         """The scene with stand-ins for all surfels."""
-        return self._replaced(scene, frozenset(i.surfels for i in scene.surfels))
+        return self._replaced(scene, frozenset(i.surfels for i in scene.surfels.different))
 
     def _forget_draft(self) -> None:
         """Free the draft, and the stand-ins that only it had."""
@@ -139,8 +139,10 @@ class Arrival:
         def few(surfels: Surfels) -> Surfels:
             return self._of(surfels, max(STAND_IN * len(surfels) // every, least))
 
-        instances = (replace(i, shape=few(i.surfels)) if i.surfels in late else i for i in scene.surfels)
-        return replace(scene, surfels=tuple(instances))
+        def changed(placed: Instance) -> Instance:
+            return replace(placed, shape=few(placed.surfels)) if placed.surfels in late else placed
+
+        return replace(scene, surfels=scene.surfels.changed(changed))
 
     def _of(self, surfels: Surfels, wanted: int) -> Surfels:
         """The stand-in of a set."""

@@ -71,7 +71,7 @@ class Refinement:
             moves = hurries or turns
             self._of, self._is_coarse = (scene, camera, settings), False
             self._begin(settings)
-            if any(instance.stream is not None for instance in scene.surfels):
+            if any(instance.stream is not None for instance in scene.surfels.different):
                 # of what is in files, a few surfels are there at once, and the rest comes as quickly as it can be drawn
                 self.pace.begin_coarsely()
                 moves = True
@@ -175,7 +175,7 @@ class Refinement:
         """The picture of a camera that moves, as coarse as its pace requires."""
         (seen, drawn), device = self.pace.begin(camera, settings), self.renderer.device
         self._drawn = self._read(scene, seen, drawn, self.pace.most)
-        cuts = () if self.pace.most is None or self._drawn is scene else self._drawn.surfels
+        cuts = () if self.pace.most is None or self._drawn is scene else self._drawn.surfels.different
         streamed = sum(len(instance.surfels) for instance in cuts if instance.is_cut)
         self._is_coarse = drawn is not settings or seen is not camera or streamed > 0
         for shown in self.renderer.draw(self._drawn, seen, drawn, in_slices=True):
