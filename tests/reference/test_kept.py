@@ -77,7 +77,7 @@ def test_a_change_of_what_a_truth_depends_on_forgets_it(changed, counted, elsewh
 def test_truths_depend_on_the_scene_and_on_no_pass(monkeypatch):
     monkeypatch.setattr(kept, "ROOT", Path(kept.__file__).parents[2])
     found = kept.dependencies()
-    assert {"splat_addon/surfels.py", "splat_addon/rendering/shading_models/brdf_table.npy"} <= set(found)
+    assert {"splat_addon/surfels/surfels.py", "splat_addon/rendering/shading_models/brdf_table.npy"} <= set(found)
     rooms = "rendering/plan/", "rendering/features/", "rendering/renderer.py", "blender/"
     assert not [file for file in found if file.startswith(tuple(f"splat_addon/{room}" for room in rooms))]
 
