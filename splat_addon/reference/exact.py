@@ -160,8 +160,9 @@ def _opaque_surface(splats: Splats, bounds, grid: RayGrid, scene: Scene, camera:
     hits = polygon_hits(scene, camera, grid, epsilon, asked_for.epsilon_length)
     limit = hits.depth + hits.overlap / np.linalg.norm(grid.rays(np.arange(grid.count))[1], axis=1)
     surface = visible_surface(splats, bounds, grid, epsilon, limit)
-    how = {"same_surface": -2.0} if asked_for.as_printed else {}
-    blended = partial(joined, contact=contact(scene, epsilon), **how)
+    # as printed, whatever lies within reach is of the same surface
+    every_surface = {"same_surface": -2.0} if asked_for.as_printed else {}
+    blended = partial(joined, contact=contact(scene, epsilon), **every_surface)
     if asked_for.lights_splats:
         return blended(surface, lit_polygons(hits, grid, scene, camera, asked_for)), limit, None
     if not asked_for.as_printed:

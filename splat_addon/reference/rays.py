@@ -255,8 +255,10 @@ def _averages(sums: np.ndarray, count: np.ndarray) -> Surface:
     normal = np.where(length > CANCELLED, normal / np.maximum(length, CANCELLED), TO_VIEWER)
     emission, light_set, finish = np.split(np.stack(columns[9:], axis=1), (3, 7), axis=1)
     weight, opacity = sums[0, rays], sums[-1, rays] / sums[0, rays]
-    rest = emission, light_set, finish, weight, count[rays], opacity
-    return Surface(rays, color, normal, depth, *columns[6:9], *rest)
+    roughness, metallic, f0 = columns[6:9]
+    return Surface(
+        rays, color, normal, depth, roughness, metallic, f0, emission, light_set, finish, weight, count[rays], opacity
+    )
 
 
 def splats_in(splats: Splats, bounds, grid: RayGrid):

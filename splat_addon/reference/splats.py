@@ -126,10 +126,7 @@ def eye_splats(scene: Scene, camera: Camera) -> Splats:
     """Every instance's surfels in the eye space of `camera`."""
     parts = [_instance_splats(instance, camera, has_finish(scene)) for instance in scene.surfels if instance.is_seen]
     if not parts:
-        vectors, flags = np.zeros((6, 0, 3)), np.zeros((4, 0), bool)
-        own = flags[0], np.zeros(0, object), *_no_uvs(0), np.zeros((0, 2, 3)), flags[1]
-        rest = *own, *np.zeros((2, 0)), *flags[2:], np.zeros(0), np.zeros((0, 2, 3))
-        return Splats(*vectors, np.zeros((0, 10 + len(PLAIN.numbers) * has_finish(scene))), *rest)
+        return _no_splats(10 + len(PLAIN.numbers) * has_finish(scene))
     return Splats(*(np.concatenate([getattr(part, f.name) for part in parts]) for f in fields(Splats)))
 
 
@@ -160,15 +157,42 @@ def _instance_splats(instance: Instance, camera: Camera, with_finish: bool) -> S
     if instance.lets_through:
         opacity = np.clip(surfels.colors[:, 3].astype(np.float64), 0, 1)
     blend = np.full(count, np.inf) if surfels.blend_depth is None else surfels.blend_depth.astype(np.float64)
-    rest = *surfels.clip_lines(), blend, opacity, is_transparent, np.full(count, instance.is_holdout), np.zeros(count)
-    rest = *rest, np.stack(normal_along, axis=1)
+    clip, reflex = surfels.clip_lines()
     splats = Splats(
-        center, u, v, plane, normal, color, _surface(instance, with_finish), cosine < 0, textures, *uvs, *rest
+        center=center,
+        u=u,
+        v=v,
+        plane=plane,
+        normal=normal,
+        color=color,
+        surface=_surface(instance, with_finish),
+        is_back=cosine < 0,
+        texture=textures,
+        uv=uvs[0],
+        uv_along=uvs[1],
+        uv_border=uvs[2],
+        clip=clip,
+        reflex=reflex,
+        blend=blend,
+        opacity=opacity,
+        is_transparent=is_transparent,
+        is_holdout=np.full(count, instance.is_holdout),
+        offset=np.zeros(count),
+        normal_along=np.stack(normal_along, axis=1),
     )
     is_seen = cosine >= 0
     if not instance.hides_backs(camera):
         is_seen |= instance.lets_through or field_values(surfels, "hidden_back") < HIDDEN
     return splats if is_seen.all() else splats.take(np.flatnonzero(is_seen))
+
+
+def _no_splats(columns: int) -> Splats:
+    """columns: of their `surface`."""
+    shapes = {"surface": (columns,), "uv": (2,), "uv_along": (2, 2), "uv_border": (2,)}
+    shapes |= {"clip": (2, 3), "normal_along": (2, 3)}
+    shapes |= dict.fromkeys(("center", "u", "v", "plane", "normal", "color"), (3,))
+    types = {"texture": object} | dict.fromkeys(("is_back", "reflex", "is_transparent", "is_holdout"), bool)
+    return Splats(**{f.name: np.zeros((0, *shapes.get(f.name, ())), types.get(f.name, float)) for f in fields(Splats)})
 
 
 def _no_uvs(count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -29,8 +29,8 @@ VALUES = {
 
 def _drawn(tile, placed):
     instance, texels = placed.instance, tile.plan.find(material_texels)
-    of_pool = pooled(tile, placed, "materials", *texels)
-    return of_pool or tile.resources.materials(instance, tuple(texels), tile.levels(instance), placed.part)
+    of_pool = pooled(tile, placed, "materials", texels)
+    return of_pool or tile.resources.materials(instance, texels, tile.levels(instance), placed.part)
 
 
 DRAWN = {"materials": _drawn}

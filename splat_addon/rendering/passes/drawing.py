@@ -15,6 +15,7 @@ from ..device.interface import Texture as DeviceTexture
 from ..plan.graph import Pass, Pause
 from ..plan.together import batches_of, pool_of, pooled_batches_of
 from ..plan.uniforms import DRAW, std140
+from ..upload.packing import PLAIN_TEXELS, MaterialTexels
 from ..upload.storages import STORAGES
 from ..view import DrawItem, Items
 
@@ -30,9 +31,11 @@ def _stored(tile: TileContext, placed: DrawItem, sampler: str) -> DeviceTexture:
     return pooled(tile, placed, sampler) or tile.stored(placed.instance).parts[placed.part][sampler]
 
 
-def pooled(tile: TileContext, placed: DrawItem, sampler: str, *about) -> DeviceTexture | None:
-    """The texture of the pool that an object is drawn from; None if it has its own. about: as of `Pool.texture`."""
-    return None if placed.items.places is None else pool_of(tile, placed.items).texture(sampler, *about)
+def pooled(
+    tile: TileContext, placed: DrawItem, sampler: str, more: MaterialTexels = PLAIN_TEXELS
+) -> DeviceTexture | None:
+    """The texture of the pool that an object is drawn from; None if it has its own. more: as of `Pool.texture`."""
+    return None if placed.items.places is None else pool_of(tile, placed.items).texture(sampler, more)
 
 
 def _corners(tile: TileContext, placed: DrawItem) -> DeviceTexture:

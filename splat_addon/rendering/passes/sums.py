@@ -16,7 +16,7 @@ from ..scene.kinds import Kinds
 from ..scene.lines import Lines
 from ..scene.style import AS_THE_PICTURE
 from ..shading_models import ShadingModel
-from ..upload.packing import MAX_FINISHES, shared_emission, shared_material
+from ..upload.packing import MAX_FINISHES, MaterialTexels, shared_emission, shared_material
 from .decisions import lights_samples, shadows
 from .textures import DEPTH_PLANE_SUM, DEPTH_SUM, MAX_COLORS, PLANE_MORE_SUM, PLANE_SUM
 
@@ -148,23 +148,6 @@ def drawn_lines(planning: Planning) -> Lines | None:
     if lines is None:
         return Lines(width=widest) if widest > 0 else None
     return replace(lines, width=max(widest, lines.width))
-
-
-class MaterialTexels(NamedTuple):
-    """What materials have beside the first of their texels: whether they have emissions, the finishes that are told
-    apart, if there are several, and the styles."""
-
-    have_emissions: bool
-    finishes: tuple[Finish, ...]
-    styles: tuple[Style, ...]
-
-    @property
-    def constants(self) -> tuple[tuple[str, int], ...]:
-        """The number of texels per material, and those of its finish and its style, if there are any: the last."""
-        first = 1 + self.have_emissions
-        named = [n for n, has in (("FINISH_TEXEL", self.finishes), ("STYLE_TEXEL", self.styles)) if has]
-        texels = ((name, first + k) for k, name in enumerate(named))
-        return ("TEXELS_PER_MATERIAL", first + len(named)), *texels
 
 
 def material_texels(planning: Planning) -> MaterialTexels:

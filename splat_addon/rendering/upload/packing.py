@@ -9,6 +9,8 @@ stored in the fractional part of the material. 2 is added to the opacity of an o
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ...clip_lines import CLIP_FIELDS, TURN
@@ -125,25 +127,40 @@ def octahedral(normals: np.ndarray) -> np.ndarray:
     return np.stack([np.where(below, folded_x, x), np.where(below, folded_y, y)])
 
 
-def pack_materials(
-    materials: tuple[Material, ...],
-    with_emission: bool = False,
-    finishes: tuple[Finish, ...] = (),
-    styles: tuple[Style, ...] = (),
-) -> np.ndarray:
-    """(1, M, 4) float32: roughness, metallic, reflectance at normal incidence, 0.
+class MaterialTexels(NamedTuple):
+    """What materials have beside the first of their texels: whether they have emissions, the finishes that are told
+    apart, if there are several, and the styles."""
 
-    with_emission: another texel each, (1, 2 M, 4): r, g, b of the emission, 0. finishes: if there are any, another
-    texel each, with the share of each of them but the first. styles: if there are any, a last texel each, with the
-    moments of its number.
+    have_emissions: bool = False
+    finishes: tuple[Finish, ...] = ()
+    styles: tuple[Style, ...] = ()
+
+    @property
+    def constants(self) -> tuple[tuple[str, int], ...]:
+        """The number of texels per material, and those of its finish and its style, if there are any: the last."""
+        first = 1 + self.have_emissions
+        named = [n for n, has in (("FINISH_TEXEL", self.finishes), ("STYLE_TEXEL", self.styles)) if has]
+        texels = ((name, first + k) for k, name in enumerate(named))
+        return ("TEXELS_PER_MATERIAL", first + len(named)), *texels
+
+
+#: Materials of one texel each.
+PLAIN_TEXELS = MaterialTexels()
+
+
+def pack_materials(materials: tuple[Material, ...], more: MaterialTexels = PLAIN_TEXELS) -> np.ndarray:
+    """(1, M T, 4) float32, T texels each: roughness, metallic, reflectance at normal incidence, 0.
+
+    more: further texels of each, in this order: r, g, b of the emission, 0; the share of each finish but the first; the
+    moments of its style's number.
     """
     texels = [[(m.roughness, m.metallic, reflectance(m.ior), 0) for m in materials]]
-    if with_emission:
+    if more.have_emissions:
         texels.append([(*m.emission, 0) for m in materials])
-    if finishes:
-        texels.append([finish_shares(m.finish, finishes) for m in materials])
-    if styles:
-        texels.append([style_moments(m.style, styles) for m in materials])
+    if more.finishes:
+        texels.append([finish_shares(m.finish, more.finishes) for m in materials])
+    if more.styles:
+        texels.append([style_moments(m.style, more.styles) for m in materials])
     return np.array(texels, np.float32).transpose(1, 0, 2).reshape(1, -1, 4)
 
 
@@ -176,15 +193,13 @@ def pack_own_materials(
     surfels: Surfels,
     materials: tuple[Material, ...],
     order=slice(None),
-    with_emission: bool = False,
-    finishes: tuple[Finish, ...] = (),
-    styles: tuple[Style, ...] = (),
+    more: MaterialTexels = PLAIN_TEXELS,
 ) -> np.ndarray:
     """(rows, 512 T, 4) float32, T texels each: as `pack_materials`, but one per surfel, and 1 at the end of its first.
 
     Values that surfels lack come from their slot. order: storage order of the surfels.
     """
-    slots = pack_materials(materials, with_emission, finishes, styles).reshape(len(materials), -1, 4)
+    slots = pack_materials(materials, more).reshape(len(materials), -1, 4)
     chosen = surfels.materials[order]
     rows, count = row_count(len(chosen)), len(chosen)
     texels = np.zeros((rows * SPLATS_PER_ROW, *slots.shape[1:]), np.float32)
@@ -192,7 +207,7 @@ def pack_own_materials(
     for column, values in enumerate((surfels.roughness, surfels.metallic)):
         if values is not None:
             texels[:count, 0, column] = values[order]
-    if with_emission and surfels.emission is not None:
+    if more.have_emissions and surfels.emission is not None:
         texels[:count, 1, :3] = surfels.emission[order]
     texels[:, 0, 3] = 1
     return texels.reshape(rows, -1, 4)

@@ -12,7 +12,7 @@ import numpy as np
 from ...surfels import LAYOUT, OPTIONAL_LAYOUT, Surfels, field_values
 from ..scene import Placed
 from ..scene.polygons import Polygons, pack_polygons
-from .packing import pack_clip_lines, pack_lifts, pack_normal_fields, pack_own_materials
+from .packing import PLAIN_TEXELS, MaterialTexels, pack_clip_lines, pack_lifts, pack_normal_fields, pack_own_materials
 from .stored_order import SPLATS_PER_ROW, stored_order
 
 if TYPE_CHECKING:
@@ -70,18 +70,17 @@ class Pool:
         last = np.repeat(slots - 1, sizes)
         self._slot_of = np.minimum(self._joined.materials, last) + np.repeat(np.cumsum(slots) - slots, sizes)
 
-    def texture(self, sampler: str, *about) -> Texture:
-        """The texture of all objects that takes the place of one's own. about: of materials, what `pack_materials`
-        takes beside them."""
-        if (sampler, *about) not in self._textures:
-            self._textures[sampler, *about] = self._made(sampler, *about)
-        return self._textures[sampler, *about]
+    def texture(self, sampler: str, more: MaterialTexels = PLAIN_TEXELS) -> Texture:
+        """The texture of all objects that takes the place of one's own. more: of materials, as of `pack_materials`."""
+        if (sampler, more) not in self._textures:
+            self._textures[sampler, more] = self._made(sampler, more)
+        return self._textures[sampler, more]
 
-    def _made(self, sampler: str, *about) -> Texture:
+    def _made(self, sampler: str, more: MaterialTexels) -> Texture:
         if sampler == "polygon_corners":
             return self._upload(pack_polygons(self._joined))
         if sampler == "materials":
-            return self._upload(self._materials(*about))
+            return self._upload(self._materials(more))
         if sampler == "clip_lines":
             return self._upload(pack_clip_lines(self._joined, self._order), "RGBA16")
         if sampler == "surfel_lifts":
@@ -90,13 +89,13 @@ class Pool:
             return self._upload(pack_normal_fields(self._joined, self._order), "RGBA16")
         arrays, self.coarse = self._storage.pack(self._joined, self._order)
         for (name, form), texels in zip(self._storage.textures, arrays, strict=True):
-            self._textures[name,] = self._upload(texels, form)
-        return self._textures[sampler,]
+            self._textures[name, PLAIN_TEXELS] = self._upload(texels, form)
+        return self._textures[sampler, PLAIN_TEXELS]
 
-    def _materials(self, *about) -> np.ndarray:
+    def _materials(self, more: MaterialTexels) -> np.ndarray:
         """One texel or more of each splat or corner: slots are those of all objects."""
         numbered = replace(self._joined, materials=self._slot_of.astype(np.int32))
-        return pack_own_materials(numbered, self._slots, self._order, *about)
+        return pack_own_materials(numbered, self._slots, self._order, more)
 
 
 #: Fields of polygons that a pool has.

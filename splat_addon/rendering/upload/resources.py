@@ -21,7 +21,15 @@ from ..scene.polygons import Polygons, pack_polygon_bumps, pack_polygon_glosses,
 from .atlas import FORMAT, make_atlas
 from .cuts import Cuts
 from .loading import JobShare, Loading, Made, NotYet, Packed
-from .packing import pack_clip_lines, pack_lifts, pack_materials, pack_normal_fields, pack_own_materials, pack_uvs
+from .packing import (
+    MaterialTexels,
+    pack_clip_lines,
+    pack_lifts,
+    pack_materials,
+    pack_normal_fields,
+    pack_own_materials,
+    pack_uvs,
+)
 from .parts import places_in_parts, stored_parts
 from .pools import Pool
 from .storages import Storage
@@ -107,24 +115,24 @@ class Resources:
     def materials(
         self,
         instance: Placed,
-        about: tuple,
+        more: MaterialTexels,
         levels: Hierarchy | None = None,
         part: int = 0,
     ) -> Texture:
         """The materials of an instance's slots; if surfels or corners have their own, one each, of one part of them.
         Uploaded once.
 
-        about: what `pack_materials` takes beside them.
+        more: as of `pack_materials`.
         """
         shape, slots = instance.shape, instance.materials
         if not shape.has_own_material:
-            return self.data(pack_materials(slots, *about))
+            return self.data(pack_materials(slots, more))
 
         if not isinstance(shape, Surfels):
-            own = partial(pack_own_materials, shape, slots, slice(None), *about)
-            return self._once(shape, "materials", (slots, *about), lambda: self.data(own()))
-        pack = partial(_packed_materials, slots, about)
-        return self._with_levels(shape, "materials", (slots, *about), levels, pack)[part]
+            own = partial(pack_own_materials, shape, slots, slice(None), more)
+            return self._once(shape, "materials", (slots, more), lambda: self.data(own()))
+        pack = partial(_packed_materials, slots, more)
+        return self._with_levels(shape, "materials", (slots, more), levels, pack)[part]
 
     def surfel_uvs(self, surfels: Surfels, levels: Hierarchy | None = None, part: int = 0) -> Texture:
         """The texture coordinates of one part of them, uploaded once."""
@@ -305,9 +313,9 @@ def _packed_surfels(storage: Storage, surfels: Surfels, levels: Hierarchy | None
     return Packed(texels, stored)
 
 
-def _packed_materials(slots, about: tuple, surfels: Surfels, levels, order: np.ndarray) -> Packed:
+def _packed_materials(slots, more: MaterialTexels, surfels: Surfels, levels, order: np.ndarray) -> Packed:
     parts = stored_parts(surfels, levels, order)
-    return _packed((pack_own_materials(some, slots, own, *about) for some, own in parts), "RGBA32F")
+    return _packed((pack_own_materials(some, slots, own, more) for some, own in parts), "RGBA32F")
 
 
 def _packed_uvs(surfels: Surfels, levels: Hierarchy | None, order: np.ndarray) -> Packed:

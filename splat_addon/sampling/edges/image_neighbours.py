@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from functools import partial
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 
@@ -35,6 +36,19 @@ _BLOCK = 8
 _RUNS, _PAIRS = 65536, 32768
 
 
+class Neighbours(NamedTuple):
+    """What a band of an image has near edges.
+
+    near: (s,) surfels that come near to any edge. Of p pairs, surfel: (p,) its number among these. side: (p,) of an
+    edge. above: (p,) float32, how much higher the surfel lies than the plane of the side's face, cells.
+    """
+
+    near: np.ndarray
+    surfel: np.ndarray
+    side: np.ndarray
+    above: np.ndarray
+
+
 def image_neighbours(
     positions: np.ndarray,
     axis: int,
@@ -44,10 +58,8 @@ def image_neighbours(
     reach: float,
     depth: float,
     grid: Grid,
-) -> Iterator[Callable[[], tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]]]:
-    """Yields a job for each band of rows of the image, which finds (s,) surfels that come near to any edge; and of p
-    pairs the (p,) surfel, by its number among these, the (p,) side of an edge and how much higher the surfel lies than
-    the plane of the side's face, (p,) cells. A surfel lies in one band.
+) -> Iterator[Callable[[], Neighbours]]:
+    """Yields a job for each band of rows of the image, in which the rows of each surfel lie.
 
     positions: (N, 3) float32 surfels, relative to the grid's middle. ends: (2, 2, e) float32 of sides, across and up in
     the image along `axis`, in cells from there. edges: (e,) of which edge, ascending. planes: (3, e) float32, their
@@ -84,7 +96,8 @@ def image_neighbours(
         run, number = expand(sides_of.take(edge))
         side, there = sides.take(edge).take(run) + number, there.take(run)
         place = np.ascontiguousarray(positions.take(near, axis=0).T[[along, up, axis]]) * scale
-        return near, *_near_planes(place, firsts.take(there), counts.take(there), side, planes, np.float32(depth))
+        pairs = _near_planes(place, firsts.take(there), counts.take(there), side, planes, np.float32(depth))
+        return Neighbours(near, *pairs)
 
     return (partial(found_in, band) for band in batches(runs_in, _RUNS) if runs_in[band].any())
 
@@ -129,7 +142,7 @@ def _surfels_in(starts: np.ndarray, stops: np.ndarray, cells: np.ndarray, size: 
 
 
 def _near_planes(place, firsts: np.ndarray, counts: np.ndarray, side: np.ndarray, planes: np.ndarray, depth):
-    """The pairs of surfels and sides near the plane of the side's face, in the form of `image_neighbours`.
+    """The pairs of surfels and sides near the plane of the side's face, as the last three of `Neighbours`.
 
     The candidates are runs of surfels, `counts` long, from `firsts` on. place: (s,) each: across, up and along the
     image's axis.

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from ...quaternions import axes_columns, quaternion_axes
 from ..ldc.grid import Grid
 from ..table import SampleTable
 from .borders import Borders
-from .image_neighbours import image_neighbours
+from .image_neighbours import Neighbours, image_neighbours
 
 #: Rows of surfels by the axis of the image that sees them: a slice or their numbers.
 Images = list[tuple[int, slice | np.ndarray]]
@@ -86,14 +87,30 @@ def meetings(
     for axis, rows in images:
         faces = np.flatnonzero(np.abs(normals[axis]) >= _LEAST_SHARE)
         order = [(axis + k) % 3 for k in (1, 2, 0)]
-        seen = ends[:, order].take(faces, axis=2), borders.edges.take(faces), normals[order].take(faces, axis=1)
-        yield from _in_image(arrays, axis, rows, faces, *seen, grid, at_centres)
+        sides = _Sides(
+            faces, ends[:, order].take(faces, axis=2), borders.edges.take(faces), normals[order].take(faces, axis=1)
+        )
+        yield from _in_image(arrays, axis, rows, sides, grid, at_centres)
+
+
+class _Sides(NamedTuple):
+    """n sides of borders that an image sees, in its own order of axes: across, up and along its axis.
+
+    numbers: (n,) among all sides. ends: (2, 3, n) float32, in cells from the grid's middle. edges: (n,) of which edge.
+    normals: (3, n) float32 of their faces.
+    """
+
+    numbers: np.ndarray
+    ends: np.ndarray
+    edges: np.ndarray
+    normals: np.ndarray
 
 
 def _in_image(
-    arrays, axis: int, rows: slice | np.ndarray, faces: np.ndarray, ends, edges, normals, grid: Grid, at_centres: bool
+    arrays: SampleTable, axis: int, rows: slice | np.ndarray, sides: _Sides, grid: Grid, at_centres: bool
 ) -> Iterator[Callable[[], Meetings]]:
-    """Yields jobs for the surfels that an image sees, with the sides that it sees. faces: number of each side."""
+    """Yields jobs that find where the sides that an image sees meet the surfels that it sees. rows: of the latter."""
+    ends, normals = sides.ends, sides.normals
     positions, scales, rotations = (arrays[name][rows] for name in ("positions", "scales", "rotations"))
     # The smaller half-axis lies across the image's axis, the larger one is foreshortened to it.
     reaches = scales[:, 1] if isinstance(rows, slice) else _reaches(scales, rotations, axis)
@@ -104,7 +121,7 @@ def _in_image(
     farthest = np.sqrt(3) * reach * (_OFF_PLANE + _OFF_ANYHOW) / _LEAST_SHARE
     inverse_spacing = np.float32(1 / grid.spacing)
 
-    def met(find: Callable) -> Meetings:
+    def met(find: Callable[[], Neighbours]) -> Meetings:
         near, surfel, side, above = find()
         # Only now that few are left, gather their attributes.
         is_left = np.zeros(len(near), bool)
@@ -113,9 +130,9 @@ def _in_image(
         seen = SeenSurfels(axis, *(of.take(near, axis=0) for of in (positions, scales, rotations)), inverse_spacing)
         numbers = near + rows.start if isinstance(rows, slice) else rows.take(near)
         found = _met(seen, numbers, number.take(surfel), side, above, ends[:, :2], normals)
-        return replace(found, side=faces.take(found.side))
+        return replace(found, side=sides.numbers.take(found.side))
 
-    found = image_neighbours(positions, axis, ends[:, :2], edges, planes, search, farthest, grid)
+    found = image_neighbours(positions, axis, ends[:, :2], sides.edges, planes, search, farthest, grid)
     return (partial(met, find) for find in found)
 
 

@@ -159,8 +159,11 @@ def _are_kept(covectors: np.ndarray, reflex: np.ndarray, offsets) -> np.ndarray:
 
 
 class _Fit:
-    """Sums over the neighbours of n samples of an image, given by number. goes_on: (n,) whether there are any beyond a
-    line, which then is no open border."""
+    """Planes of least squares through n samples of an image and their neighbours, as sums over the latter.
+
+    part: numbers of the samples in the image. lines: their own clip lines, beyond which neighbours do not count.
+    goes_on: (n,) whether there are any beyond a line, which then is no open border.
+    """
 
     def __init__(self, image: ImageSamples, part: np.ndarray, lines: _Lines):
         self._image, self._lines, self._next_axes = image, lines, image.next_axes(part)
