@@ -17,6 +17,7 @@ from .detail.streamed import Streamed
 from .device import Device
 from .device.interface import Texture as DeviceTexture
 from .device.interface import texture_bytes
+from .device.waits import Waits
 from .frame import OUTPUTS, Frame
 from .identity import Identified, nearer
 from .passes.decisions import numbered
@@ -142,9 +143,12 @@ class Renderer:
                 return Summed(panorama_frame(cropped, number, settings, draw, next(turns)))
             return Summed(draw(*seen(number), settings, next(turns), part))
 
-        if is_added_up and prepared(*seen(numbers[0]), settings, part).plan.passes:
+        if is_added_up and (shared := prepared(*seen(numbers[0]), settings, part)).plan.passes:
             views = ((seen(number), told) for number, told in zip(numbers, turns, strict=False))
-            of_samples = ((prepared(moved, of, settings, part), moved, told) for (moved, of), told in views)
+            of_samples = (
+                (prepared(moved, of, settings, part) if camera.lens else shared, moved, told)
+                for (moved, of), told in views
+            )
             yield self._completed(scene, self._added_up(of_samples, settings))
             return
         for number in numbers:
@@ -189,6 +193,7 @@ class Renderer:
     def _added_up(self, samples: Iterable[tuple[Shared, Camera, Progress | None]], settings: Settings) -> Summed:
         """The sum of samples of one scene."""
         started, count, stats = perf_counter(), 0, None
+        waits = Waits(self.device)
         try:
             for shared, camera, progress in samples:
                 own = new_stats(self.device, shared.plan, self.streamed)
@@ -196,8 +201,7 @@ class Renderer:
                 if not count:
                     self._sums.begin(shared.plan)
                 for _, target in self._tiles.tiles(shared, camera, own, progress):
-                    self.device.finish(target)
-                self.device.restore()
+                    waits.after(target)
                 count, stats, plan = count + 1, own, shared.plan
             arrays, stats["pixels_not_finite"] = self._sums.read(plan, settings)
         finally:

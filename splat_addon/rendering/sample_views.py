@@ -9,6 +9,7 @@ from dataclasses import replace
 from .depth_range import ClipRange, clipped, seen_by
 from .scene.camera import Camera
 from .scene.table import InstanceTable
+from .scene.window import with_fields
 from .view import View, build_view, scaled_projection
 
 
@@ -38,4 +39,4 @@ class SampleViews:
 
     def of(self, camera: Camera) -> View:
         """The view of a sample's camera."""
-        return replace(self._view, projection=scaled_projection(camera, *self._clip))
+        return with_fields(self._view, projection=scaled_projection(camera, *self._clip))

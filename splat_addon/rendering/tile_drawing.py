@@ -43,38 +43,46 @@ class TileDrawing:
 
     def slices(self, shared: Shared, camera: Camera, stats, progress) -> Iterator[tuple[Tile, Target] | Pause]:
         """Draw a plan's tiles. Nothing else may be drawn with these resources during a pause."""
-        scene, frame_plan, settings = shared.scene, shared.plan, shared.settings
+        frame_plan, resources = shared.plan, self._resources
         if not frame_plan.passes:
             return
-        self._resources.forget_textures_but(shared.kept("textures", lambda: _textures(frame_plan)))
-        self._resources.cuts.begin_frame()
-        self._resources.forget_atlases_but(scene.table.kinds.find(_looked_up))
-        if self._resources.loading:
-            check_arrived(TileContext(self._resources, frame_plan, scene, camera, settings, None, shared))
         whole = None
         if frame_plan.tiles != ((0, 0, *camera.size),):
-            drawn = camera.cropped(*_drawn((0, 0, *camera.size), frame_plan))
-            whole = shared.whole(drawn)
-        execution = Execution(*self._watching(settings, frame_plan, stats, progress))
+            whole = shared.whole(camera.cropped(*_drawn((0, 0, *camera.size), frame_plan)))
+        execution = Execution(*self._watching(shared.settings, frame_plan, stats, progress))
         for number, tile in enumerate(frame_plan.tiles):
             stats["tile"] = number
             tile_camera = camera.cropped(*_drawn(tile, frame_plan))
-            view, repeats = shared.view(number, tile_camera, whole)
-            if not repeats.are_still(self._resources.textures):
-                repeats.forget()
-            of_picture = self._resources, frame_plan, scene, tile_camera, settings
+            repeats = shared.repeats(number, tile_camera)
+            follows = resources.follows(repeats) and bool(repeats.passes)
+            if not number and not follows:
+                self._begin(shared, camera)
+            view = shared.view(number, tile_camera, whole)
+            of_picture = resources, frame_plan, shared.scene, tile_camera, shared.settings
             context = TileContext(*of_picture, view=view, shared=shared, rectangle=tile, repeats=repeats)
             context.bring_blocks()
-            for p in repeats.found("with cuts", partial(context.with_cuts, view.placed)):
-                context.drawn_count(p)  # chooses them
-                yield Pause()
-            target = yield from execution.run(frame_plan.steps, context)
+            if follows or repeats.hold(resources):
+                target = yield from execution.again(repeats, follows)
+            else:
+                for p in repeats.found("with cuts", partial(context.with_cuts, view.placed)):
+                    context.drawn_count(p)  # chooses them
+                    yield Pause()
+                target = yield from execution.run(frame_plan.steps, context)
             stats["layers"] = execution.turns
             stats["instances_degenerate"] = view.degenerate
             for name, count in repeats.found("counted", partial(counted, context)).items():
                 stats[name] = max(stats[name], count) if name == "surfels_coarse" else stats[name] + count
             yield tile, target
         del stats["tile"]
+
+    def _begin(self, shared: Shared, camera: Camera) -> None:
+        """Free what this picture does not use, after others. Raises `NotYet` for what is on its way."""
+        scene, frame_plan, resources = shared.scene, shared.plan, self._resources
+        resources.forget_textures_but(shared.kept("textures", lambda: _textures(frame_plan)))
+        resources.cuts.begin_frame()
+        resources.forget_atlases_but(scene.table.kinds.find(_looked_up))
+        if resources.loading:
+            check_arrived(TileContext(resources, frame_plan, scene, camera, shared.settings, None, shared))
 
     def _watching(self, settings, frame_plan, stats, progress):
         """Callbacks before and after each pass."""

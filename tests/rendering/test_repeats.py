@@ -12,13 +12,17 @@ from splat_addon.rendering.features import hidden_objects
 from splat_addon.rendering.plan import executor
 from splat_addon.rendering.plan.frame_plan import FramePlan
 from splat_addon.rendering.plan.repeats import Repeats
+from splat_addon.rendering.plan.tile import TileContext
 from splat_addon.rendering.scene import Instance
 from splat_addon.sampling import TriangleMesh, sample_mesh
+from tests.rendering.agreement_shots import SHOTS
 
 PLACES = [(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)]
 SHEET = sample_mesh(TriangleMesh(np.array(PLACES, float), np.array([(0, 1, 2), (0, 2, 3)])), resolution=8)
 CAMERA = Camera.perspective(look_at((0, -4, 3), (0, 0, 0)), 0.8, (24, 16))
 SAMPLES = 3
+#: Pictures of which most values are needed.
+SAMPLED = ("polygons-quad-1.0", "shadows-quad-toon", "solid_sphere-quad-flat-lines", "torus-quad-flat-eye_dome")
 
 
 def scene(transparent: bool = False) -> Scene:
@@ -71,15 +75,38 @@ def test_samples_are_drawn_anew_only_where_hidden_objects_are_looked_for(render,
 
 
 def test_calls_hold_for_the_textures_that_they_drew_into():
-    kept, p = Repeats(records=True), SimpleNamespace()
-    called, texture = [], object()
+    kept, called, texture = Repeats(records=True), [], object()
+    resources = SimpleNamespace(textures={"depth": texture, "more": None}, made_from={"shadows": 1})
     kept.begin()
     kept.call(called.append, 1)
     kept.uses("depth", texture)
-    kept.end(p, "target")
-    for call in kept.of(p).calls:
+    kept.end(0, "p", "target")
+    kept.shares("shadows", 1)
+    assert not kept.hold(resources), "the sample is not complete"
+    kept.complete()
+    ((number, p, calls, lasting, target),) = kept.passes
+    for call in calls:
         call()
-    assert called == [1, 1] and kept.of(p).target == "target" and kept.of(SimpleNamespace()) is None
-    assert kept.are_still({"depth": texture, "more": None}) and not kept.are_still({"depth": object()})
-    kept.forget()
-    assert kept.of(p) is None and kept.are_still({})
+    assert called == [1, 1] and (number, p, lasting, target) == (0, "p", [], "target")
+    assert kept.hold(resources)
+    for other in ({"textures": {"depth": object()}}, {"made_from": {"shadows": 2}}, {"made_from": {}}):
+        assert not kept.hold(SimpleNamespace(**vars(resources) | other))
+    kept.restart()
+    assert not kept.passes
+
+
+@pytest.mark.parametrize("name", SAMPLED)
+def test_blocks_have_all_values_that_differ_between_samples(name, render, monkeypatch):
+    """Those that `SAMPLE_VALUES` lack would stay the first sample's."""
+    of, camera, settings = SHOTS[name]()
+    brought, bring = [], TileContext.bring_blocks
+
+    def compared(tile):
+        bring(tile)
+        for (rise, block), values in tile.repeats.blocks.items():
+            np.testing.assert_array_equal(values, replace(tile, rise=rise)._values_in(block), str(block))
+            brought.extend(name for _, name in block[2])
+
+    monkeypatch.setattr(TileContext, "bring_blocks", compared)
+    render(of, camera.cropped(camera.size[0] // 2, camera.size[1] // 2, 8, 8), replace(settings, samples=2))
+    assert "projection" in brought

@@ -82,7 +82,7 @@ def sample_camera(camera: Camera, number: int, samples: int) -> Camera:
     # a camera that is one of a picture's samples already stays one
     variance = camera.sample_variance + (_BOX_VARIANCE if samples > 1 else 0.0)
     own = {"sample": camera.sample + number, "sample_variance": variance}
-    moved = _moved(camera, *pixel_offset(number, samples)).with_values(**own)
+    moved = camera.with_values(window=_moved(camera, *pixel_offset(number, samples).tolist()), **own)
     return _through(moved, camera.lens.points(sample_points(1, number)[0, 2:])) if camera.lens else moved
 
 
@@ -160,11 +160,11 @@ def _nearer(kept: dict[str, np.ndarray], arrays: dict[str, np.ndarray]) -> dict[
     }
 
 
-def _moved(camera: Camera, x: float, y: float) -> Camera:
-    """The camera with its window shifted by pixels."""
+def _moved(camera: Camera, x: float, y: float) -> tuple[float, float, float, float]:
+    """The camera's window shifted by pixels."""
     left, right, bottom, top = camera.window
     dx, dy = x * (right - left) / camera.size[0], y * (top - bottom) / camera.size[1]
-    return camera.with_values(window=(left + dx, right + dx, bottom + dy, top + dy))
+    return left + dx, right + dx, bottom + dy, top + dy
 
 
 def _through(camera: Camera, place: np.ndarray) -> Camera:

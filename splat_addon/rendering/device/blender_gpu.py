@@ -91,6 +91,9 @@ class BlenderDevice:
     def draw_fullscreen(self, pipeline, target, blocks, textures, viewport=None):
         self._draw(pipeline, target, blocks, textures, self._triangle, None, viewport)
 
+    def changed(self, block):
+        self._uniforms.pop(id(block), None)
+
     def finish(self, target):
         target.read_one()
 

@@ -165,7 +165,7 @@ class Device(Protocol):
         """Draw this many triangles from number `first` on, in order: vertex 3 t + c is corner c of triangle t.
 
         blocks: float32 values of each uniform block in std140 layout. The same array is not uploaded twice before
-            `restore`.
+            `restore`, unless `changed` says that it has other values.
         viewport: x, y, width, height in pixels of the part of the target to draw into; None for all of it.
         """
 
@@ -173,6 +173,9 @@ class Device(Protocol):
         self, pipeline, target, blocks: list[np.ndarray], textures: list[Texture], viewport=None
     ) -> None:
         """Draw one triangle of three vertices, 0 to 2, that `fullscreen.vert.glsl` stretches over the viewport."""
+
+    def changed(self, block: np.ndarray) -> None:
+        """Note that an array of values of a uniform block has others than when it was last drawn with."""
 
     def finish(self, target: Target) -> None:
         """Wait until drawing into the target is complete."""

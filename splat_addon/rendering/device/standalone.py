@@ -74,6 +74,9 @@ class StandaloneDevice:
     def draw_fullscreen(self, pipeline, target, blocks, textures, viewport=None):
         self.draw_triangles(pipeline, target, 1, blocks, textures, viewport)
 
+    def changed(self, block):
+        """Nothing: `_uniform` compares values."""
+
     def finish(self, target):
         self._context.finish()
 

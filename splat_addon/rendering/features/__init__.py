@@ -9,6 +9,7 @@ Each module decides from a `Planning` whether the frame needs it, and records th
     read_back(planning)    textures that are read back when the frame is complete
     check(plan)            raises ValueError for a plan that no device has room for
     VALUES                 name -> (type, value for a tile) of its values in the uniform block `frame`
+    SAMPLE_VALUES          the same of those that differ between samples from one place
     INPUTS                 sampler -> the texture for a tile that no pass writes
     DRAWN                  sampler -> the texture for a tile and what is drawn (a `DrawItem`)
     ARRIVES                those of them with one texel or more per surfel -> whether an instance needs it
@@ -134,7 +135,7 @@ FEATURES = (
 
 #: member -> how many parameters it takes; 0 for tables
 _MEMBERS = {"passes": 1, "is_present": 1, "parts": 2, "read_back": 1, "check": 1, "draws": 3, "margin": 1}
-_MEMBERS |= dict.fromkeys(("VALUES", "INPUTS", "DRAWN", "ARRIVES", "CONSTANTS", "NAMES"), 0)
+_MEMBERS |= dict.fromkeys(("VALUES", "SAMPLE_VALUES", "INPUTS", "DRAWN", "ARRIVES", "CONSTANTS", "NAMES"), 0)
 
 #: The share of letters that a misspelt name has in common with what it means.
 _ALIKE = 0.8
@@ -183,7 +184,8 @@ def _joined(attribute: str) -> dict:
 
 
 _MODELS = SHADING_MODELS.values()
-VALUES = _joined("VALUES") | {name: value for model in _MODELS for name, value in model.values.items()}
+SAMPLE_VALUES = _joined("SAMPLE_VALUES")
+VALUES = SAMPLE_VALUES | _joined("VALUES") | {name: value for model in _MODELS for name, value in model.values.items()}
 INPUTS = _joined("INPUTS") | {name: texture for model in _MODELS for name, texture in model.tables.items()}
 DRAWN = _joined("DRAWN") | drawing.DRAWN
 ARRIVES = drawing.ARRIVES | _joined("ARRIVES")

@@ -117,8 +117,10 @@ VALUES = {
     "occlusion_distance": ("float", _distance),
     "occlusion_height": ("float", lambda tile: tile.plan.find(size)[1] * tile.plan.samples),
     "occlusion_reach": ("float", lambda tile: tile.plan.find(beside)[1] * tile.plan.samples),
-    "occlusion_shift": ("vec2", _shift),
     "occlusion_picture": ("vec4", _picture),
+}
+SAMPLE_VALUES = {
+    "occlusion_shift": ("vec2", _shift),
     "occlusion_turn": ("float", lambda tile: (0.5 + _TURN * tile.camera.sample) % 1),
 }
 CONSTANTS = {"OCCLUSION_SHARE": SHARE}

@@ -33,7 +33,7 @@ def _turned(tile) -> int:
     return int(f"{tile.camera.sample % _PERIOD:016b}"[::-1], 2)
 
 
-VALUES = {"cut_corner": ("vec2", _corner), "cut_turned": ("float", _turned)}
+SAMPLE_VALUES = {"cut_corner": ("vec2", _corner), "cut_turned": ("float", _turned)}
 
 
 def _count(planning) -> int:

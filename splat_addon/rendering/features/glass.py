@@ -68,9 +68,11 @@ _ASIDE = math.sqrt(2) - 1
 VALUES = {
     "to_glass": ("mat4", _to_glass),
     "from_glass": ("mat4", lambda tile: np.linalg.inv(_to_glass(tile))),
+    "glass_leaves": ("float", lambda tile: tile.shared.glass_surfaces.leaves),
+}
+SAMPLE_VALUES = {
     "glass_aside": ("float", lambda tile: math.sqrt(_ASIDE * tile.camera.sample % 1)),
     "glass_turn": ("float", lambda tile: _TURN * tile.camera.sample % (2 * math.pi)),
-    "glass_leaves": ("float", lambda tile: tile.shared.glass_surfaces.leaves),
 }
 INPUTS = {
     "glass_surfaces": lambda tile: tile.resources.kept(tile.shared.glass_surfaces, tile.shared.glass_surfaces.texels),

@@ -72,6 +72,8 @@ VALUES = {
     "probe_count": ("float", lambda tile: len(tile.plan.find(probes))),
     "probe_side": ("float", lambda tile: tile.shared.probes.side),
     "to_probes": ("mat4", _to_probes),
+}
+SAMPLE_VALUES = {
     # the picture's first sample of a pixel, and how many there are along its edges
     "reflected_sample": ("vec2", lambda tile: (tile.camera.sample * tile.plan.samples**2, tile.plan.samples)),
 }

@@ -42,7 +42,7 @@ FARTHEST = Texture("farthest_lit", "R32F", lambda plan, pixels: hidden_objects.o
 #: Successive samples begin the spirals of their taps at fractions of a step that fill it evenly (the golden ratio).
 _TURN = (math.sqrt(5) - 1) / 2
 
-VALUES = {"shadow_turn": ("float", lambda tile: (0.125 + _TURN * tile.camera.sample) % 1)}
+SAMPLE_VALUES = {"shadow_turn": ("float", lambda tile: (0.125 + _TURN * tile.camera.sample) % 1)}
 INPUTS = {
     "shadow_maps": lambda t: t.resources.data(
         pack_shadow_maps(t.plan.find(shadows).maps, t.shared.shadow_views, t.camera, t.view.scale)

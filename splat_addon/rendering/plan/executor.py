@@ -10,6 +10,7 @@ from ..device.interface import Target
 from .graph import Loop, Pass, Pause, Step
 
 if TYPE_CHECKING:
+    from .repeats import Repeats
     from .tile import TileContext
 
 
@@ -24,18 +25,31 @@ class Execution:
 
     def __init__(self, told: Callable[[Pass, int], None], done: Callable[[Pass, Target], None]):
         self._is_shared_done, self._told, self._done = False, told, done
-        self._follows, self.turns = False, 0
+        self.turns = 0
 
     def run(self, steps: tuple[Step, ...], tile: TileContext) -> Generator[Pause, None, Target | None]:
         """Run all steps, with pauses between and in them; returns the target of the last pass. turns: maximum number of
         iterations of loops in any tile."""
         self._number, target = 0, None
-        self._follows = tile.resources.follows(tile.repeats)
+        tile.repeats.restart()
         for step in steps:
             # none after the last, which completes what is seen
             yield Pause(target)
             target = yield from self._repeat(step, tile) if isinstance(step, Loop) else self._pass(step, tile)
         self._is_shared_done = True
+        tile.repeats.complete()
+        return target
+
+    def again(self, repeats: Repeats, follows: bool) -> Generator[Pause, None, Target]:
+        """Make the calls of a sample again. follows: whether nothing else was drawn since; returns as `run`."""
+        target = None
+        for number, p, calls, lasting, into in repeats.passes:
+            yield Pause(target)
+            self._told(p, number)
+            for call in calls if follows else (*lasting, *calls):
+                call()
+            target = into
+            self._done(p, target)
         return target
 
     def _pass(self, p: Pass, tile: TileContext) -> Generator[Pause, None, Target | None]:
@@ -49,23 +63,19 @@ class Execution:
             if made_from.pop(key, None) != value:
                 yield from self._drawn(p, tile)
             made_from[key] = value
+            tile.repeats.shares(key, value)
         return None
 
     def _drawn(self, p: Pass, tile: TileContext) -> Generator[Pause, None, Target | None]:
         self._told(p, self._number - 1)
-        if known := tile.repeats.of(p):
-            for call in known.calls if self._follows else (*known.lasting, *known.calls):
-                call()
-            target = known.target
-        else:
-            if p.once is None:
-                tile.repeats.begin()
-            target = run_pass(tile, p)
-            if isinstance(target, Generator):
-                target = yield from target
-            tile.repeats.end(p, target)
-            for texture in p.all("updates"):
-                tile.swap(texture)
+        if p.once is None:
+            tile.repeats.begin()
+        target = run_pass(tile, p)
+        if isinstance(target, Generator):
+            target = yield from target
+        tile.repeats.end(self._number - 1, p, target)
+        for texture in p.all("updates"):
+            tile.swap(texture)
         self._done(p, target)
         return target
 

@@ -93,18 +93,21 @@ class Shared:
     def _epsilons(self) -> tuple[float, float]:
         return self.settings.epsilon, self.settings.epsilon_length
 
-    def view(self, tile: int, camera: Camera, whole: ClipRange | None) -> tuple[View, Repeats]:
-        """The scene as the camera of a tile and sample sees it, and what it shares with other samples of the tile.
-
-        whole: as of `build_view`.
-        """
-        table, place, (epsilon, length) = self.scene.table.seen, (tile, camera.matrix_world.tobytes()), self._epsilons
+    def view(self, tile: int, camera: Camera, whole: ClipRange | None) -> View:
+        """The scene as the camera of a tile and sample sees it. whole: as of `build_view`."""
+        table, (epsilon, length) = self.scene.table.seen, self._epsilons
         if not self._are_alike:
-            return build_view(table, camera, epsilon, whole, epsilon_length=length), Repeats()
-        view = self.kept(("views", place), lambda: SampleViews(table, camera, whole, epsilon, length)).of(camera)
+            return build_view(table, camera, epsilon, whole, epsilon_length=length)
+        key = "views", tile, camera.matrix_world.tobytes()
+        return self.kept(key, lambda: SampleViews(table, camera, whole, epsilon, length)).of(camera)
+
+    def repeats(self, tile: int, camera: Camera) -> Repeats:
+        """What a sample of a tile shares with the others from the place of its camera."""
+        if not self._are_alike:
+            return Repeats()
         may_repeat = self.plan.may_repeat and len(self.plan.tiles) == 1
-        repeats = self.kept(("repeats", place), lambda: Repeats(may_repeat))
-        return view, repeats if repeats.records else Repeats()
+        repeats = self.kept(("repeats", tile, camera.matrix_world.tobytes()), lambda: Repeats(may_repeat))
+        return repeats if repeats.records else Repeats()
 
     def program(self, p: Pass, names: tuple, make: Callable[[], Pipeline]) -> Pipeline:
         """The program of a pass with these names of its vertex shader and variants."""

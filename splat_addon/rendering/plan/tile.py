@@ -10,7 +10,7 @@ import numpy as np
 
 from ..device.interface import Pipeline, Target
 from ..device.interface import Texture as DeviceTexture
-from ..features import DRAWN, DRAWS, INPUTS, VALUES
+from ..features import DRAWN, DRAWS, INPUTS, SAMPLE_VALUES, VALUES
 from ..methods import get_method
 from ..passes.decisions import has_backdrop
 from ..scene import Instance, Scene
@@ -25,7 +25,7 @@ from .graph import Pass, Texture, of_pixels
 from .programs import describe
 from .repeats import Repeats
 from .shared import Shared
-from .uniforms import DRAW, INSTANCE, VIEW, Block, instance_values, std140
+from .uniforms import DRAW, INSTANCE, VIEW, Block, instance_values, put, std140
 
 #: What rejects hidden splats reads less than this many pixels beyond their ellipses.
 _BESIDE = 24
@@ -127,32 +127,43 @@ class TileContext(CutChoice):
             self.repeats.blocks[key] = self._values_in(block)
         return self.repeats.blocks[key]
 
-    def _values_in(self, block: Block, packed: np.ndarray | None = None) -> np.ndarray:
+    def _values_in(self, block: Block) -> np.ndarray:
         values = self._view_values if block is VIEW else [VALUES[name][1](self) for _, name in block[2]]
-        return std140(block, values, packed)
+        return std140(block, values)
 
     def bring_blocks(self) -> None:
-        """Give the blocks that other samples made the values of this one."""
+        """Give the blocks that another sample from this place made the values of this one."""
         for (rise, block), values in self.repeats.blocks.items():
-            (replace(self, rise=rise) if rise else self)._values_in(block, values)
+            if block is VIEW:
+                put(block, values, {"projection": self._projection(rise), "window": self.window})
+            elif own := {name: VALUES[name][1](self) for _, name in block[2] if name in SAMPLE_VALUES}:
+                put(block, values, own)
+            else:
+                continue
+            self.resources.device.changed(values)
 
     @property
     def _view_values(self):
         to_world = np.eye(4)
         to_world[:3, :3] = self.camera.matrix_world[:3, :3]
         view, is_parallel = self.view, self.camera.is_orthographic
-        projection, lengths = view.projection, (self.depth_unit, 1.0 / view.scale)
-        if self.rise:
+        lengths = self.depth_unit, 1.0 / view.scale
+        projection, variance = self._projection(self.rise), self.plan.filter_variance
+        return projection, to_world, self.window, view.near, is_parallel, *lengths, variance
+
+    def _projection(self, rise: float) -> np.ndarray:
+        projection = self.view.projection
+        if rise:
             projection = projection.copy()
-            projection[1] += projection[3] * self.rise
-        return projection, to_world, self.window, view.near, is_parallel, *lengths, self.plan.filter_variance
+            projection[1] += projection[3] * rise
+        return projection
 
     @property
     def depth_unit(self) -> float:
         """Factor from view depth to stored linear depth; 0 if hardware depth is stored."""
         return 1.0 / self.view.far if self.plan.linear_depth else 0.0
 
-    @property
+    @cached_property
     def window(self) -> tuple[float, float, float, float]:
         """Left, bottom and step of one sample, on the plane at depth 1 or (parallel cameras) in scaled units."""
         left, right, bottom, top = self.camera.window

@@ -6,6 +6,7 @@ A shader has the blocks that its text uses (`programs`); the frame's block holds
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cache
 
 import numpy as np
@@ -104,23 +105,29 @@ def instance_values(items: Items) -> np.ndarray:
 _SIZES = {"float": (1, 1), "vec2": (2, 2), "vec4": (4, 4), "mat4": (16, 4)}
 
 
-def std140(block: Block, values, packed: np.ndarray | None = None) -> np.ndarray:
-    """float32 values of a block's fields in std140 layout: matrices column by column, padded to whole vectors. packed:
-    an array of such values that takes these."""
+def std140(block: Block, values) -> np.ndarray:
+    """float32 values of a block's fields in std140 layout: matrices column by column, padded to whole vectors."""
     places, length = _layout(block[2])
-    packed = np.zeros(length, np.float32) if packed is None else packed
-    for (place, is_matrix), value in zip(places, values, strict=True):
-        packed[place] = np.transpose(value).ravel() if is_matrix else value
+    packed = np.zeros(length, np.float32)
+    put(block, packed, dict(zip(places, values, strict=True)))
     return packed
 
 
+def put(block: Block, packed: np.ndarray, values: Mapping[str, object]) -> None:
+    """Put other values of some fields into what `std140` has made."""
+    places, _ = _layout(block[2])
+    for name, value in values.items():
+        place, is_matrix = places[name]
+        packed[place] = value.T.ravel() if is_matrix else value
+
+
 @cache
-def _layout(fields) -> tuple[tuple[tuple[slice, bool], ...], int]:
+def _layout(fields) -> tuple[dict[str, tuple[slice, bool]], int]:
     """The place of each field, and whether it is a matrix; and the length of all of them."""
-    places, at = [], 0
-    for kind, _ in fields:
+    places, at = {}, 0
+    for kind, name in fields:
         size, alignment = _SIZES[kind]
         at = -(-at // alignment) * alignment
-        places.append((slice(at, at + size), kind == "mat4"))
+        places[name] = slice(at, at + size), kind == "mat4"
         at += size
-    return tuple(places), -(-at // 4) * 4
+    return places, -(-at // 4) * 4

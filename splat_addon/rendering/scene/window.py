@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import Self
+from typing import Self, TypeVar
 
 import numpy as np
 
@@ -14,6 +14,16 @@ MAX_EDGE = 1 << 17
 
 #: Of a camera's axes of unit length, the least singular value: float32 has seven digits.
 _LEAST_ROOM = 1e-6
+
+
+Frozen = TypeVar("Frozen")
+
+
+def with_fields(of: Frozen, **values) -> Frozen:
+    """A copy of a frozen dataclass with other values of some fields, which are not checked."""
+    made = object.__new__(type(of))
+    made.__dict__.update(of.__dict__ | values)
+    return made
 
 
 class Windowed:
@@ -48,9 +58,7 @@ class Windowed:
 
     def with_values(self, **values) -> Self:
         """A copy with other values of some fields, which follow from valid ones and are not checked again."""
-        made = object.__new__(type(self))
-        made.__dict__.update(self.__dict__ | values)
-        return made
+        return with_fields(self, **values)
 
 
 def _rigid(matrix_world) -> np.ndarray:
