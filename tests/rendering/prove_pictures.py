@@ -9,6 +9,8 @@ needs a picture, or is not needed.
 import argparse
 import sys
 from collections import defaultdict
+from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from unittest.mock import patch
 
@@ -21,7 +23,7 @@ import equal_pictures  # noqa: E402
 
 from splat_addon.rendering import Renderer, open_device  # noqa: E402
 from splat_addon.rendering import plan as planned  # noqa: E402
-from splat_addon.rendering.plan import build, programs  # noqa: E402
+from splat_addon.rendering.plan import build, graph, programs  # noqa: E402
 from splat_addon.rendering.plan.composition import DEFAULTS  # noqa: E402
 from splat_addon.rendering.plan.graph import Loop, Pass  # noqa: E402
 
@@ -78,11 +80,11 @@ def without(thing: tuple, p: Pass) -> Pass:
     if (host, of) != (p.host, p.kind):
         return p
     if kind == "part":
-        return p._replace(parts=tuple(t for t in p.parts if [t.feature, t.words, t.only] != which))
+        return replace(p, parts=tuple(t for t in p.parts if [t.feature, t.words, t.only] != which))
     parts = (
         t._replace(choices=tuple(c for c in t.choices if [t.feature, *c] != which)) if t.choices else t for t in p.parts
     )
-    return p._replace(parts=tuple(parts))
+    return replace(p, parts=tuple(parts))
 
 
 def is_told(renderer, thing: tuple, names: list[str], cases, before: dict) -> bool:
@@ -103,15 +105,23 @@ def is_told(renderer, thing: tuple, names: list[str], cases, before: dict) -> bo
 def taken_out(thing: tuple):
     """A context in which plans are made without it."""
     if thing[0] == "plan chooses":
-        usual, taken = ((thing[1], DEFAULTS[thing[1]]),), programs._taken
-        return patch.object(
-            programs, "_taken", lambda *given: [t._replace(choices=t.choices + usual) for t in taken(*given)]
-        )
+        return chosen_as_usual(thing[1])
     if thing[0] == "pass":
         changed = build.changed
         return patch.object(build, "changed", lambda steps, change: less(thing, changed(steps, change)))
     with_parts = build._with_parts
     return patch.object(build, "_with_parts", lambda *given: without(thing, with_parts(*given)))
+
+
+@contextmanager
+def chosen_as_usual(name: str):
+    usual, taken = ((name, DEFAULTS[name]),), programs._taken
+    chosen = patch.object(
+        programs, "_taken", lambda *given: [t._replace(choices=t.choices + usual) for t in taken(*given)]
+    )
+    # no program of another plan
+    with chosen, patch.object(graph, "_wiring", graph.Wiring):
+        yield
 
 
 def less(thing: tuple, steps: tuple) -> tuple:

@@ -123,7 +123,7 @@ def _handing(planning, p, in_layer: bool, has_layers: bool):
 def check(plan: FramePlan) -> None:
     """Raise ValueError for a pass with more attachments than all devices support."""
     for p in plan.passes:
-        if len(p.fills) > MAX_COLORS and len(p.colors) > MAX_COLORS and p.host:
+        if len(p.colors) > MAX_COLORS and p.host:
             names = [texture.name for texture in p.colors]
             raise ValueError(
                 f"The {p.name} pass would write {len(names)} textures at once ({', '.join(names)}), and "
@@ -134,12 +134,9 @@ def check(plan: FramePlan) -> None:
 def check_samplers(plan: FramePlan, room: int) -> None:
     """Raise ValueError for a pass whose shader would read more textures than a device supports."""
     for p in plan.passes:
-        for variant in {part.only for part in p.parts}:
-            parts = [part for part in p.parts if part.only in ("", variant)]
-            read = dict.fromkeys(name for part in parts for name in part.inputs)
-            read |= dict.fromkeys(texture.name for part in parts for texture in (*part.reads, *part.updates))
-            if len(read) > room:
-                raise ValueError(
-                    f"The {p.name} pass would read {len(read)} textures at once ({', '.join(read)}), and this device "
-                    f"has room for {room}. Leave outputs out, or give all objects one material and no transparency."
-                )
+        read = p.wiring.most_read
+        if len(read) > room:
+            raise ValueError(
+                f"The {p.name} pass would read {len(read)} textures at once ({', '.join(read)}), and this device "
+                f"has room for {room}. Leave outputs out, or give all objects one material and no transparency."
+            )

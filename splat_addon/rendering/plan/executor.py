@@ -74,7 +74,7 @@ class Execution:
         if isinstance(target, Generator):
             target = yield from target
         tile.repeats.end(self._number - 1, p, target)
-        for texture in p.all("updates"):
+        for texture in p.wiring.updates:
             tile.swap(texture)
         self._done(p, target)
         return target

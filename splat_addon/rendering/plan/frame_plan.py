@@ -64,6 +64,11 @@ class FramePlan:
         return self.found[fact]
 
     @cached_property
+    def keys(self) -> dict[tuple[Texture, tuple[int, int], bool], tuple]:
+        """What `tile.texture_key` has found."""
+        return {}
+
+    @cached_property
     def passes(self) -> tuple[Pass, ...]:
         """All passes in order; those of a loop once."""
         return tuple(each_pass(self.steps))
@@ -84,7 +89,7 @@ class FramePlan:
     def may_repeat(self) -> bool:
         """Whether the same calls may draw all samples from one place: no loop looks when it ends, and no textures are
         swapped. If a pass reads what it drew, they are not kept."""
-        return not any(isinstance(step, Loop) or step.all("updates") for step in self.steps)
+        return not any(isinstance(step, Loop) or step.wiring.updates for step in self.steps)
 
     @cached_property
     def filled(self) -> dict[str, Texture]:
@@ -92,7 +97,7 @@ class FramePlan:
         found = {}
         for p in self.passes:
             found |= {texture.name: texture for texture in p.fills}
-            found |= {f"{texture.name}_next": texture for texture in p.all("updates")}
+            found |= {f"{texture.name}_next": texture for texture in p.wiring.updates}
         return found
 
     @property

@@ -8,11 +8,11 @@ the previous contents, so passes can share a texture (each transparent layer reu
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
-from types import MappingProxyType
+from dataclasses import dataclass, field, replace
+from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
 
-from ..device.interface import FORMATS
+from ..device.interface import FORMATS, PipelineDescription
 from .hosts import Host, Kind
 
 #: channels -> GLSL type
@@ -113,7 +113,46 @@ def fill_all(tile, p: Pass):
     return tile.fill(p)
 
 
-class Pass(NamedTuple):
+class Wiring:
+    """What the parts of a pass read and fill together.
+
+    fills: the attachments; colors: in slot order, without depth. depth: the one used for the hardware's depth test.
+    updates: as of `Part`. samplers: the textures that are sampled and that passes write, by name. most_read: the names
+    of all textures that are sampled, of the variant that has most. programs: what `programs.describe` made of them.
+    """
+
+    def __init__(self, parts: tuple[Part, ...]):
+        self._parts = parts
+        self.fills = tuple(dict.fromkeys([t for part in parts for t in part.fills]))
+        self.colors = tuple(texture for texture in self.fills if not texture.is_depth)
+        self.depth = next((t for t in (*self.fills, *self.all("tests")) if t.is_depth), None)
+        self.updates = self.all("updates")
+        called = dict(self.all("called"))
+        self.samplers = {called.get(texture, texture.name): texture for texture in self.all("reads", "updates")}
+        self.most_read = max((self._read_by(part.only) for part in parts), key=len, default=())
+        self.programs: dict[tuple, PipelineDescription] = {}
+
+    def all(self, *fields: str) -> tuple:
+        """The union of these fields over all parts."""
+        return tuple(dict.fromkeys(item for part in self._parts for name in fields for item in getattr(part, name)))
+
+    def _read_by(self, variant: str) -> tuple[str, ...]:
+        own = [part for part in self._parts if part.only in ("", variant)]
+        textures = [texture.name for part in own for texture in (*part.reads, *part.updates)]
+        return tuple(dict.fromkeys([name for part in own for name in part.inputs] + textures))
+
+
+#: Passes whose wiring is kept: about twenty make a picture, but an animated setting may change their constants.
+_WIRINGS = 1024
+
+
+@lru_cache(_WIRINGS)
+def _wiring(parts: tuple[Part, ...]) -> Wiring:
+    return Wiring(parts)
+
+
+@dataclass(frozen=True)
+class Pass:
     """name: shown to the user. reason: why the frame needs it. host: its fragment shader, by which features identify
     it, as by kind; None for a pass that has none, and so no parts of other features.
 
@@ -130,28 +169,31 @@ class Pass(NamedTuple):
     run: Callable[[Any, Pass], Any]
     parts: tuple[Part, ...]
     kind: Kind = Kind.OPAQUE
-    state: Mapping[str, Any] = MappingProxyType({})
+    state: Mapping[str, Any] = field(default_factory=dict)
     adds: bool = False
     once: Callable[[Any, Pass], object] | None = None
     each: Pass | None = None
 
+    @cached_property
+    def wiring(self) -> Wiring:
+        """Of its parts; found once for all passes with equal ones."""
+        return _wiring(self.parts)
+
     def all(self, *fields: str) -> tuple:
         """The union of these fields over all parts."""
-        return tuple(dict.fromkeys(item for part in self.parts for name in fields for item in getattr(part, name)))
+        return self.wiring.all(*fields)
 
-    @property
+    @cached_property
     def fills(self) -> tuple[Texture, ...]:
         return tuple(dict.fromkeys([t for part in self.parts for t in part.fills]))
 
     @property
     def colors(self) -> tuple[Texture, ...]:
-        """The attachments in slot order, without depth."""
-        return tuple(texture for texture in self.fills if not texture.is_depth)
+        return self.wiring.colors
 
     @property
     def depth(self) -> Texture | None:
-        """The attachment used for the hardware's depth test."""
-        return next((t for t in (*self.fills, *self.all("tests")) if t.is_depth), None)
+        return self.wiring.depth
 
     @property
     def reads(self) -> tuple[str, ...]:
@@ -193,7 +235,7 @@ def changed(steps: Iterable[Step], change: Callable[[Pass], Pass]) -> tuple[Step
     def one(step: Step) -> Step:
         if isinstance(step, Loop):
             return step._replace(body=changed(step.body, change), last=changed(step.last, change))
-        return change(step)._replace(each=change(step.each)) if step.each else change(step)
+        return replace(change(step), each=change(step.each)) if step.each else change(step)
 
     return tuple(one(step) for step in steps)
 
@@ -229,7 +271,7 @@ def _without(p: Pass, dead: set[Texture]) -> Pass:
     if not dead:
         return p
     pairs = [(part, part.without(dead)) for part in p.parts]
-    return p._replace(parts=tuple(new for old, new in pairs if new.fills or not old.fills or old is p.parts[0]))
+    return replace(p, parts=tuple(new for old, new in pairs if new.fills or not old.fills or old is p.parts[0]))
 
 
 def _live_before(p: Pass, live: set[Texture]) -> set[Texture]:

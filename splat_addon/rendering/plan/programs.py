@@ -19,7 +19,16 @@ _NUMBER = ("flat", "float", "instance_number")
 
 
 def describe(plan: FramePlan, p: Pass, vertex: str = "fullscreen.vert", *variants: str) -> PipelineDescription:
-    """The pipeline of a pass with the parts of these variants."""
+    """The pipeline of a pass with the parts of these variants; found once for equal passes."""
+    of_plan = plan.variants, plan.choices, plan.linear_depth, plan.multisamples
+    key = p.name, p.host, p.kind, *p.state.items(), of_plan, vertex, variants
+    known = p.wiring.programs
+    if key not in known:
+        known[key] = _described(plan, p, vertex, *variants)
+    return known[key]
+
+
+def _described(plan: FramePlan, p: Pass, vertex: str, *variants: str) -> PipelineDescription:
     parts = _taken(plan, p, variants)
     texts = composed(plan, p, vertex, *variants)
     called = {texture: name for part in parts for texture, name in part.called}

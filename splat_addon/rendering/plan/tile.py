@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+import math
+from dataclasses import dataclass, field
 from functools import cached_property, partial
 
 import numpy as np
@@ -71,7 +72,7 @@ class TileContext(CutChoice):
 
     def target(self, p: Pass) -> Target:
         """The target that a pass draws into."""
-        depth, updated = p.depth if p.state.get("depth_test") else None, p.all("updates")
+        depth, updated = p.depth if p.state.get("depth_test") else None, p.wiring.updates
         colors = [self.texture(texture, texture in updated) for texture in p.colors]
         return self.resources.device.target(colors, depth and self.texture(depth))
 
@@ -96,8 +97,7 @@ class TileContext(CutChoice):
 
     def textures(self, p: Pass, program: Pipeline, placed: DrawItem | None = None) -> list[DeviceTexture]:
         """The textures that a program samples. placed: the object being drawn."""
-        called = dict(p.all("called"))
-        read = {called.get(texture, texture.name): texture for texture in p.all("reads", "updates")}
+        read = p.wiring.samplers
 
         def found(name: str) -> DeviceTexture:
             if name in read:
@@ -187,12 +187,19 @@ class TileContext(CutChoice):
         if is_everywhere or self.view.bounds is None:
             return None
         writes_pixels = all(texture.per is of_pixels for texture in p.fills)
-        reach, size = beside + self.plan.margin * (1 if writes_pixels else 2), np.array(self.camera.size)
-        bounds = np.reshape(self.view.bounds, (2, 2))
-        first, last = np.clip(bounds[0] - reach, 0, size), np.clip(bounds[1] + reach, 0, size)
-        scale = np.array(self.plan.size(p.fills[0], self.camera.size)) / size
-        first, last = np.floor(first * scale).astype(int), np.ceil(last * scale).astype(int)
-        return (*first.tolist(), *(last - first).tolist())
+        reach, size = beside + self.plan.margin * (1 if writes_pixels else 2), self.camera.size
+        low, high = self.view.bounds[:2], self.view.bounds[2:]
+        texels = self.plan.size(p.fills[0], size)
+        scales = [count / edge for count, edge in zip(texels, size, strict=True)]
+        ends = zip(low, high, size, scales, strict=True)
+        first, last = zip(
+            *(
+                (math.floor(min(max(a - reach, 0), edge) * scale), math.ceil(min(max(b + reach, 0), edge) * scale))
+                for a, b, edge, scale in ends
+            ),
+            strict=True,
+        )
+        return (*first, last[0] - first[0], last[1] - first[1])
 
     def fill(self, p: Pass, viewport=None) -> Target:
         """Draw over everything that a pass writes, or a part: x, y, width, height of the target."""
@@ -207,5 +214,8 @@ class TileContext(CutChoice):
 
 def texture_key(texture: Texture, size: tuple[int, int], plan: FramePlan, is_next: bool = False) -> TextureKey:
     """The key of a plan's texture, for a tile of `size` pixels."""
-    name = f"{texture.name}_next" if is_next else texture.name
-    return name, *plan.size(texture, size), plan.format(texture), plan.multisamples_of(texture)
+    known, about = plan.keys, (texture, size, is_next)
+    if about not in known:
+        name = f"{texture.name}_next" if is_next else texture.name
+        known[about] = name, *plan.size(texture, size), plan.format(texture), plan.multisamples_of(texture)
+    return known[about]
