@@ -10,7 +10,6 @@ import argparse
 import sys
 from collections import defaultdict
 from contextlib import contextmanager
-from dataclasses import replace
 from pathlib import Path
 from unittest.mock import patch
 
@@ -80,11 +79,11 @@ def without(thing: tuple, p: Pass) -> Pass:
     if (host, of) != (p.host, p.kind):
         return p
     if kind == "part":
-        return replace(p, parts=tuple(t for t in p.parts if [t.feature, t.words, t.only] != which))
+        return p.with_values(parts=tuple(t for t in p.parts if [t.feature, t.words, t.only] != which))
     parts = (
         t._replace(choices=tuple(c for c in t.choices if [t.feature, *c] != which)) if t.choices else t for t in p.parts
     )
-    return replace(p, parts=tuple(parts))
+    return p.with_values(parts=tuple(parts))
 
 
 def is_told(renderer, thing: tuple, names: list[str], cases, before: dict) -> bool:

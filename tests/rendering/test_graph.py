@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Passes over typed textures: unread ones are trimmed, loops end early, and updated textures are swapped."""
 
-from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
@@ -47,7 +46,7 @@ def test_an_attachment_that_nobody_reads_goes_with_its_part():
     steps, before = trimmed([VISIBLE, SUMS, SHADE], [PICTURE])
     assert [p.name for p in steps] == ["visible", "sums", "shade"] and not before
     assert parts_of(steps, "sums") == ["sums", "tints"] and steps[1].colors == (SUM,) and steps[1].depth is DEPTH
-    counting = replace(SHADE, parts=(*SHADE.parts, Part("counts", reads=(COUNT,))))
+    counting = SHADE.with_values(parts=(*SHADE.parts, Part("counts", reads=(COUNT,))))
     steps, _ = trimmed([VISIBLE, SUMS, counting], [PICTURE])
     assert parts_of(steps, "sums") == ["sums", "counts", "tints"]
 
@@ -71,7 +70,7 @@ def test_a_loop_keeps_what_its_next_turn_and_what_follows_read():
 
 
 def test_every_pass_can_be_changed():
-    steps = changed([VISIBLE, LOOP], lambda p: replace(p, reason="changed"))
+    steps = changed([VISIBLE, LOOP], lambda p: p.with_values(reason="changed"))
     assert {p.reason for p in each_pass(steps)} == {"changed"} and len(list(each_pass(steps))) == 5
 
 
@@ -86,7 +85,7 @@ def test_a_loop_ends_where_nothing_is_left(surfaces, turns, ends):
 
 
 def test_what_is_made_once_is_made_with_the_first_tile():
-    maps, tiles = replace(VISIBLE, once=lambda tile, p: "key"), [Tile(0), Tile(0)]
+    maps, tiles = VISIBLE.with_values(once=lambda tile, p: "key"), [Tile(0), Tile(0)]
     execution = Execution(lambda p, number: None, lambda p, target: None)
     for tile in tiles:
         list(execution.run((maps, SHADE), tile))

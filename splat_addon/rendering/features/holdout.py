@@ -32,7 +32,7 @@ def passes(planning):
     if cutting and planning.method.rasterizer == "screen_space":
         own = visibility.own_parts(planning, nearest_depth(planning, DEPTH, ROW_DEPTH))
         why = "a filter brings what lies behind a hole before it"
-        yield replace(visibility.drawn("holdouts", why, own, planning, Kind.HOLES), run=run)
+        yield visibility.drawn("holdouts", why, own, planning, Kind.HOLES).with_values(run=run)
 
 
 def is_present(planning) -> bool:

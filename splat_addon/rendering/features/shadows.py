@@ -78,13 +78,13 @@ def passes(planning):
             if hidden_objects.may_hide(planning, opaque)
             else None
         )
-        yield replace(drawn, run=run, once=_depends_on, each=each)
+        yield drawn.with_values(run=run, once=_depends_on, each=each)
 
 
 def _depends_on(tile, p: Pass) -> tuple:
     """All that the maps depend on, but for the camera of the picture."""
     of_scene = contents(tile.scene.table, tile.plan.find(shadows).maps, tile.levels)
-    return replace(p, once=None, reason=""), tile.plan.choices, tile.settings, of_scene
+    return p.with_values(once=None, reason=""), tile.plan.choices, tile.settings, of_scene
 
 
 def is_present(planning) -> bool:
@@ -127,7 +127,7 @@ def run(tile, p: Pass):
             tile, plan=seen, camera=made.drawn, settings=settings, view=view, shown_blocks={},
             is_depth_only=True, repeats=Repeats(),
         )  # fmt: skip
-        drawn = replace(p, state={**p.state, "fragment_depth": is_linear, "sample_shading": False})
+        drawn = p.with_values(state={**p.state, "fragment_depth": is_linear, "sample_shading": False})
         yield from visibility.run_in(from_light, drawn, target, made.viewport)
     return target
 

@@ -49,7 +49,7 @@ def passes(planning):
     why = f"splats may hide one another; {planning.find(depth_format).why}"
     seen = nearest_depth(planning)
     made = drawn("visibility", why, own_parts(planning, seen), planning)
-    yield replace(made, each=hidden_objects.search(planning, seen, rows_of(seen)))
+    yield made.with_values(each=hidden_objects.search(planning, seen, rows_of(seen)))
 
 
 def parts(planning, p):

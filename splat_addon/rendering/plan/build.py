@@ -8,7 +8,6 @@ left out: print the plan to read them.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import replace
 
 from ..detail.history import History, no_history
 from ..features import CHECKS, MARGINS, PARTS, PASSES, READ_BACK
@@ -126,4 +125,4 @@ def _with_parts(planning: Planning, p: Pass, present: Iterable[Callable[[Plannin
         return p
     found = [part for parts in present for part in parts(planning, p)]
     reason = "; ".join([p.reason, *(part.reason for part in found if part.reason)])
-    return replace(p, reason=reason, parts=(*p.parts, *found))
+    return p.with_values(reason=reason, parts=(*p.parts, *found))

@@ -8,7 +8,7 @@ the previous contents, so passes can share a texture (each transparent layer reu
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields
 from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
 
@@ -174,6 +174,12 @@ class Pass:
     once: Callable[[Any, Pass], object] | None = None
     each: Pass | None = None
 
+    def with_values(self, **values) -> Pass:
+        """A pass with other values of some fields."""
+        made = object.__new__(Pass)
+        made.__dict__.update({name: self.__dict__[name] for name in _FIELDS} | values)
+        return made
+
     @cached_property
     def wiring(self) -> Wiring:
         """Of its parts; found once for all passes with equal ones."""
@@ -206,6 +212,9 @@ class Pass:
         return (*(t.name for t in self.all("writes")), *(f"{t.name}_next" for t in self.all("updates")))
 
 
+_FIELDS = tuple(f.name for f in fields(Pass))
+
+
 class Loop(NamedTuple):
     """Passes that repeat `times`, or until one leaves `stop`, which is read back, empty; `last` runs if none does."""
 
@@ -235,7 +244,7 @@ def changed(steps: Iterable[Step], change: Callable[[Pass], Pass]) -> tuple[Step
     def one(step: Step) -> Step:
         if isinstance(step, Loop):
             return step._replace(body=changed(step.body, change), last=changed(step.last, change))
-        return replace(change(step), each=change(step.each)) if step.each else change(step)
+        return change(step).with_values(each=change(step.each)) if step.each else change(step)
 
     return tuple(one(step) for step in steps)
 
@@ -271,7 +280,7 @@ def _without(p: Pass, dead: set[Texture]) -> Pass:
     if not dead:
         return p
     pairs = [(part, part.without(dead)) for part in p.parts]
-    return replace(p, parts=tuple(new for old, new in pairs if new.fills or not old.fills or old is p.parts[0]))
+    return p.with_values(parts=tuple(new for old, new in pairs if new.fills or not old.fills or old is p.parts[0]))
 
 
 def _live_before(p: Pass, live: set[Texture]) -> set[Texture]:
