@@ -60,6 +60,7 @@ class Items:
     split_distances: (n,) of polygons the farthest distance, of splats the least of their centres, view units; 0: no
         limit.
     step: the level of detail at which all of them are drawn whole, of `detail.steps`; None: each as its cut.
+    show_nearest: whether splats do not blend, and each sample shows the nearest one.
     places: (n, 2) of those in a pool, the first triangle that is drawn of each, and their number; None for others.
     setback: minimum distance by which a visibility pass moves them back, beside `View.least_offset` and in its unit.
     """
@@ -72,6 +73,7 @@ class Items:
     split_distances: np.ndarray
     setback: float = 0.0
     step: int | None = None
+    show_nearest: bool = False
     places: np.ndarray | None = None
 
     def __len__(self) -> int:

@@ -43,7 +43,7 @@ def _programs(made: FramePlan, p: Pass) -> Iterator[tuple[str, ...]]:
     others = sorted(variants - VERTEX.keys())
     own = p.host.vertex
     usual = own if (FOLDER / "hosts" / f"{own}.glsl").exists() else "fullscreen.vert"
-    for first in sorted(variants & VERTEX.keys()) or [""]:
+    for first in (*sorted(variants & VERTEX.keys()), ""):
         for more in ((), others, *([variant] for variant in others)):
             yield (VERTEX.get(first, usual), *filter(None, [first]), *more)
 

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...hierarchy import Hierarchy
+from ...surfels import Surfels
 from ..scene import Instance
 from ..scene.camera import Camera
 from ..view import Items
@@ -22,6 +23,10 @@ LEAST_TOGETHER = 8
 
 #: Instances with more triangles than this are drawn one by one: a call for each is little beside them.
 MOST_TRIANGLES = 1 << 13
+
+#: Half-axis in pixels of the largest splats that need not blend with one another: larger ones show facets of smooth
+#: surfaces.
+MOST_NEAREST = 3.0
 
 #: Doublings of the error from one cut to the next, and the most cuts between the finest and the coarsest.
 _OCTAVE, _MOST_LIMITS = 0.25, 48
@@ -33,7 +38,8 @@ class Steps(NamedTuple):
     numbers: storage indices of what they draw, one cut after the other, in each of which clipped ones come first.
     first, clipped, last: (k,) of each cut, where it begins, its clipped ones end, and it ends. errors: (k, 2) the
     largest of each, object units, increasing, 0 for the surfels themselves; without those of what it shows in the
-    second column. radii: (k,) the largest half-axis of what is merged in each, object units, increasing.
+    second column. radii: (k,) the largest half-axis of what is merged in each, object units, increasing. sizes: (k,)
+    the largest half-axis of all that each draws, object units.
     """
 
     numbers: np.ndarray
@@ -42,6 +48,7 @@ class Steps(NamedTuple):
     last: np.ndarray
     errors: np.ndarray
     radii: np.ndarray
+    sizes: np.ndarray
 
     @property
     def counts(self) -> np.ndarray:
@@ -49,9 +56,10 @@ class Steps(NamedTuple):
         return self.last - self.first
 
 
-def make_steps(levels: Hierarchy, places: np.ndarray, clipped: tuple[slice, ...]) -> Steps:
+def make_steps(levels: Hierarchy, surfels: Surfels, places: np.ndarray, clipped: tuple[slice, ...]) -> Steps:
     """places: storage index of each surfel and then each node. clipped: where clipped ones are in the storage."""
-    numbers, errors, radii, clipped_counts = [], [], [], []
+    numbers, errors, radii, clipped_counts, sizes = [], [], [], [], []
+    longest = np.concatenate([surfels.scales.max(axis=1), levels.nodes.scales.max(axis=1)])
     for entries in _cuts(levels):
         own = places[entries]
         are_clipped = np.logical_or.reduce([(own >= part.start) & (own < part.stop) for part in clipped])
@@ -60,13 +68,15 @@ def make_steps(levels: Hierarchy, places: np.ndarray, clipped: tuple[slice, ...]
         merged = entries[entries >= levels.surfels] - levels.surfels
         nodes = levels.errors[merged]
         radii.append(levels.nodes.scales[merged].max(initial=0.0))
+        sizes.append(longest[entries].max(initial=0.0))
         errors.append((nodes.max(initial=0.0), nodes[:, :2].max(initial=0.0)))
-    sizes = np.array([len(own) for own in numbers], int)
-    first = np.cumsum(sizes) - sizes
+    counts = np.array([len(own) for own in numbers], int)
+    first = np.cumsum(counts) - counts
     every = np.concatenate([np.zeros(0, np.int32), *numbers])
     rising = np.maximum.accumulate(np.reshape(errors, (-1, 2)), axis=0)
     clipped_end = first + np.array(clipped_counts, int)
-    return Steps(every, first, clipped_end, first + sizes, rising, np.maximum.accumulate(np.array(radii)))
+    rising_radii = np.maximum.accumulate(np.array(radii))
+    return Steps(every, first, clipped_end, first + counts, rising, rising_radii, np.array(sizes))
 
 
 def _cuts(levels: Hierarchy) -> Iterator[np.ndarray]:
@@ -115,9 +125,20 @@ def may_step(instance: Instance, count: int) -> bool:
 
 def chosen_steps(steps: Steps, items: Items, camera: Camera, tolerance: float, is_depth_only: bool) -> np.ndarray:
     """(n,) the coarsest level of each that is off by at most so many pixels at its nearest point; -1 if none is."""
-    pixels = camera.pixels_per_unit() * items.table.stretches
-    if not camera.is_orthographic:
-        # merged surfels must not touch the near plane, where methods may treat splats differently
-        pixels = np.where(items.nearest > camera.near, pixels / np.maximum(items.nearest, camera.near), np.inf)
+    pixels = _most_pixels(items, camera)
     with np.errstate(divide="ignore"):
         return np.searchsorted(steps.errors[:, int(is_depth_only)], tolerance / pixels, "right") - 1
+
+
+def are_small(steps: Steps, items: Items, chosen: np.ndarray, camera: Camera) -> np.ndarray:
+    """(n,) bool: those of whose splats no half-axis is longer than `MOST_NEAREST`. chosen: (n,) their levels."""
+    return (chosen >= 0) & (steps.sizes[chosen] * _most_pixels(items, camera) <= MOST_NEAREST)
+
+
+def _most_pixels(items: Items, camera: Camera) -> np.ndarray:
+    """(n,) pixels of an object unit at the nearest point of each."""
+    pixels = camera.pixels_per_unit() * items.table.stretches
+    if camera.is_orthographic:
+        return pixels
+    # merged surfels must not touch the near plane, where methods may treat splats differently
+    return np.where(items.nearest > camera.near, pixels / np.maximum(items.nearest, camera.near), np.inf)

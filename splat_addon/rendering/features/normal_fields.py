@@ -7,7 +7,7 @@ from ...normal_fields import NORMAL_STEP, share_of
 from ..passes.decisions import lights_samples
 from ..passes.drawing import pooled
 from ..plan.graph import Part
-from ..plan.hosts import BLENDED, SPLAT_HOSTS, Host, Kind
+from ..plan.hosts import BLENDED, BLENDING_HOSTS, Host, Kind
 from ..plan.planning import count, counted
 
 CONSTANTS = {"NORMAL_STEP": NORMAL_STEP}
@@ -46,7 +46,7 @@ passes, is_present = counted(
 
 
 def parts(planning, p):
-    if p.host in SPLAT_HOSTS and p.kind in BLENDED:
+    if p.host in BLENDING_HOSTS and p.kind in BLENDED:
         words = ("turns_sprites",) if p.host == Host.POINT_SPRITE else ()
         constants = (("NORMAL_SHARE", repr(share_of(planning.settings.as_printed))),)
         yield Part("normal_fields", words, inputs=("normal_fields",), varyings=_VARYINGS, constants=constants)

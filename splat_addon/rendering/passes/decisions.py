@@ -9,13 +9,17 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+import numpy as np
+
 from ...surfels import Surfels
 from ..depth_range import DepthExtent, depth_extent
 from ..detail import levels
+from ..detail.steps import may_step
 from ..frame import NUMBERED
 from ..plan.graph import Pass, Texture
 from ..plan.hosts import BLENDED, LIT_HOSTS, SPLAT_HOSTS, Kind
 from ..plan.planning import Planning, any_of, count
+from ..scene import Placed
 from ..shading_models import ShadingModel, get_shading_model
 from ..shadows.atlas import ShadowMap
 from ..shadows.maps import shadow_maps as maps_for
@@ -25,6 +29,9 @@ from .textures import IDENTITY, POLYGON_IDENTITY, ROW_DEPTH, ROW_IDENTITY, VISIB
 #: hardware depth resolves 128 / 2^24 = 8e-6 of it: 1.5 % of the epsilon of a splat of one pixel in a picture of 1000
 #: pixels.
 MAX_HARDWARE_DEPTH_RATIO = 128
+
+#: With their merged surfels, so many have numbers that float32 holds exactly.
+MOST_NOTED = 1 << 22
 
 #: Up to this radius of a splat at distance 1, its corners may be moved back instead of every fragment.
 MAX_HARDWARE_DEPTH_RADIUS = 0.25
@@ -172,6 +179,22 @@ def merging(planning: Planning) -> frozenset[Surfels]:
     tolerance, method = planning.settings.detail_tolerance, planning.method
     seen = planning.scene, planning.camera, tolerance, planning.samples
     return levels.merging(*seen, planning.history, method.widens)
+
+
+def nearest_kinds(planning: Planning) -> tuple[Placed, ...]:
+    """One instance of each kind whose splats need not blend where they are small: neither textures nor normals change
+    over them, and a filter of silhouettes blends what samples show."""
+    if not planning.method.filters_silhouettes or planning.model.is_diagnostic:
+        return ()
+    found, may_show = planning.find(merging), [kind.placed for kind in planning.surfels if _shows_nearest(*kind)]
+    merged = [placed for placed in may_show if placed.surfels in found]
+    room = np.cumsum([len(placed.surfels) for placed in merged]) <= MOST_NOTED
+    return tuple(placed for placed, has_room in zip(merged, room, strict=True) if has_room)
+
+
+def _shows_nearest(placed: Placed, count: int) -> bool:
+    changes = placed.is_textured or placed.is_transparent or placed.surfels.normals_change
+    return may_step(placed, count) and not changes
 
 
 def have_clip_lines(planning: Planning) -> int:

@@ -13,6 +13,8 @@ from ..culling.polygon_runs import triangle_runs
 from ..device.interface import Pipeline
 from ..device.interface import Texture as DeviceTexture
 from ..plan.graph import Pass, Pause
+from ..plan.hosts import SPLAT_HOSTS
+from ..plan.numbering import first_noted
 from ..plan.together import batches_of, pool_of, pooled_batches_of
 from ..plan.uniforms import DRAW, std140
 from ..upload.packing import PLAIN_TEXELS, MaterialTexels
@@ -58,6 +60,8 @@ def draw_splats(tile: TileContext, p: Pass, target, items: Items, vertex, *varia
     programs = Programs(tile, p, vertex, *variants)
     yield from _draw_pooled(tile, p, target, items, programs, viewport)
     for batch in batches_of(tile, items):
+        if batch.show_nearest and p.host in SPLAT_HOSTS:
+            continue
         if len(batch) == 1 and batch.step is None:
             yield from draw_parts(tile, p, target, tile.in_parts(batch.item(0)), programs, viewport)
             continue
@@ -171,5 +175,6 @@ def draw_block(
         first_instance,
         first,
         stride,
+        first_noted(tile, placed),
     )
     return std140(DRAW, values)

@@ -22,15 +22,17 @@ _STEPS_OF_SIZES = 2
 INSTANCES_PER_ROW = 1024
 
 
-def batches(items: Items, triangles: np.ndarray, steps: np.ndarray) -> list[Items]:
+def batches(items: Items, triangles: np.ndarray, steps: np.ndarray, nearest: np.ndarray) -> list[Items]:
     """The items in the order of their first ones, in groups of one kind that are drawn together, or of one item.
 
     triangles: (n,) that are drawn of each, alike for one kind; 0 for those that are drawn by themselves. steps: (n,)
-    levels of detail at which they are drawn whole, which only those at one level are together; -1 for none.
+    levels of detail at which they are drawn whole, which only those at one level are together; -1 for none. nearest:
+    (n,) bool, as of `Items.show_nearest`, of which all of a group have one value.
     """
     if len(items) < detail.LEAST_TOGETHER and (steps < 0).all():
         return [items] if len(items) == 1 else [items.taken(np.array([row])) for row in range(len(items))]
-    _, first, group, counts = np.unique(items.table.kind_of * _MOST_STEPS + steps, True, True, True)
+    keys = (items.table.kind_of * _MOST_STEPS + steps) * 2 + nearest
+    _, first, group, counts = np.unique(keys, True, True, True)
     each = triangles[first]
     is_one = (counts >= detail.LEAST_TOGETHER) & (each <= detail.MOST_TRIANGLES) & (each > 0) | (steps[first] >= 0)
     are_together = is_one[group]
@@ -38,7 +40,8 @@ def batches(items: Items, triangles: np.ndarray, steps: np.ndarray) -> list[Item
     made = []
     for row in begins.tolist():
         own = items.taken(np.flatnonzero(group == group[row]) if are_together[row] else np.array([row]))
-        made.append(replace(own, step=int(steps[row])) if steps[row] >= 0 else own)
+        is_whole = steps[row] >= 0
+        made.append(replace(own, step=int(steps[row]), show_nearest=bool(nearest[row])) if is_whole else own)
     return made
 
 

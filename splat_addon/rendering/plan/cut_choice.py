@@ -11,9 +11,9 @@ import numpy as np
 
 from ...hierarchy import Hierarchy, Sight, cut_blocks, entries_of
 from ..detail.levels import is_worth_preparing, sight
-from ..detail.steps import Steps, chosen_steps, make_steps, may_step
+from ..detail.steps import Steps, are_small, chosen_steps, make_steps, may_step
 from ..device.interface import Texture as DeviceTexture
-from ..passes.decisions import merging
+from ..passes.decisions import merging, nearest_kinds
 from ..scene import Instance, Placed
 from ..upload.cuts import Cut, whole_set
 from ..upload.parts import place_in_part
@@ -69,11 +69,24 @@ class CutChoice:
             found[rows] = chosen_steps(steps, items.taken(rows), self.camera, tolerance, is_depth_only)
         return found
 
+    def show_nearest(self, items: Items, steps: np.ndarray) -> np.ndarray:
+        """(n,) bool: those whose splats are so small that each sample shows the nearest (`features.nearest_splats`).
+        steps: as of `steps_of`."""
+        found = np.zeros(len(items), bool)
+        if self.is_depth_only or not self.plan.find(nearest_kinds):
+            return found
+        for placed in self.plan.find(nearest_kinds):
+            rows = np.flatnonzero(items.table.of_kinds(lambda other, placed=placed: other is placed) & (steps >= 0))
+            if len(rows):
+                found[rows] = are_small(self.steps(placed), items.taken(rows), steps[rows], self.camera)
+        return found
+
     def steps(self, instance: Instance) -> Steps:
         """The levels at which an instance may be drawn whole."""
         levels, places = self.levels(instance), self.stored(instance).places
         return self.resources.cuts.kept(
-            (levels, "steps"), lambda: make_steps(levels, places, clipped_places(instance.surfels, levels))
+            (levels, "steps"),
+            lambda: make_steps(levels, instance.surfels, places, clipped_places(instance.surfels, levels)),
         )
 
     def step_numbers(self, instance: Instance) -> DeviceTexture:

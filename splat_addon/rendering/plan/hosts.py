@@ -18,6 +18,7 @@ class Host(StrEnum):
     OBJECT_SPACE = "object_space.frag"
     SCREEN_SPACE = "screen_space.frag"
     POINT_SPRITE = "point_sprite.frag"
+    NEAREST_SPLATS = "nearest_splats.frag"
     LIT_SPLATS = "lit_splats.frag"
     POLYGONS = "polygons.frag"
     SAMPLE_DEPTHS = "sample_depths.frag"
@@ -61,7 +62,9 @@ class Kind(StrEnum):
 
 #: rasterizer -> what adds its splats to sums
 RASTERIZED = {name: Host(f"{name}.frag") for name in RASTERIZERS}
-SPLAT_HOSTS = frozenset(RASTERIZED.values())
+BLENDING_HOSTS = frozenset(RASTERIZED.values())
+#: What adds anything to sums.
+SPLAT_HOSTS = BLENDING_HOSTS | {Host.NEAREST_SPLATS}
 #: What lights samples.
 LIT_HOSTS = frozenset({Host.SHADING, Host.DEFERRED_LIGHTING})
 #: What lights samples or individual splats.

@@ -18,7 +18,11 @@ from .uniforms import DRAW, INSTANCE, VIEW, Block
 _NUMBER = ("flat", "float", "instance_number")
 
 
-def describe(plan: FramePlan, p: Pass, vertex: str = "fullscreen.vert", *variants: str) -> PipelineDescription:
+#: The vertex shader of a pass that draws over everything.
+FULLSCREEN = "fullscreen.vert"
+
+
+def describe(plan: FramePlan, p: Pass, vertex: str = FULLSCREEN, *variants: str) -> PipelineDescription:
     """The pipeline of a pass with the parts of these variants; found once for equal passes."""
     of_plan = plan.variants, plan.choices, plan.linear_depth, plan.multisamples
     key = p.name, p.host, p.kind, *p.state.items(), of_plan, vertex, variants
@@ -35,6 +39,11 @@ def _described(plan: FramePlan, p: Pass, vertex: str, *variants: str) -> Pipelin
     updated = {texture for part in parts for texture in part.updates}
     drawn = [texture for part in parts for texture in part.fills if not texture.is_depth]
     sampled = [(called.get(t, t.name), t) for part in parts for t in (*part.reads, *part.updates)]
+    varyings = tuple(dict.fromkeys([varying for part in parts for varying in part.varyings] + _told(texts)))
+    if vertex == FULLSCREEN and varyings:
+        # no vertices tell fragments anything: these find it out
+        texts = texts[0], "".join(f"{kind} {name};\n" for _, kind, name in varyings) + texts[1]
+        varyings = ()
     return PipelineDescription(
         name="_".join((p.name, *variants)),
         vertex=texts[0],
@@ -42,7 +51,7 @@ def _described(plan: FramePlan, p: Pass, vertex: str, *variants: str) -> Pipelin
         blocks=blocks_in(*texts),
         samplers=tuple(dict.fromkeys([name for part in parts for name in part.inputs] + [name for name, _ in sampled])),
         multisampled=tuple(dict.fromkeys(name for name, t in sampled if plan.multisamples_of(t))),
-        varyings=tuple(dict.fromkeys([varying for part in parts for varying in part.varyings] + _told(texts))),
+        varyings=varyings,
         outputs=tuple((t.type, f"{t.name}_next" if t in updated else called.get(t, t.name)) for t in drawn),
         defines=tuple({**constants_in(*texts), **{n: str(v) for part in parts for n, v in part.constants}}.items()),
         **p.state,

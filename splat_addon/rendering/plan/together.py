@@ -31,7 +31,8 @@ def _made_batches(tile: TileContext, items: Items) -> list[Items]:
         alone = items.of_kinds(lambda placed: id(placed) not in pooled.rows)
     # a cut is its instance's own
     are_whole = alone.table.of_kinds(lambda placed: tile.levels(placed) is None)
-    return batches(alone, alone.table.triangles * are_whole, tile.steps_of(alone))
+    steps = tile.steps_of(alone)
+    return batches(alone, alone.table.triangles * are_whole, steps, tile.show_nearest(alone, steps))
 
 
 def pool_of(tile: TileContext, items: Items) -> Pool | None:

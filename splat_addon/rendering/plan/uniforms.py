@@ -40,6 +40,7 @@ VIEW: Block = (
 #: anything, as a share of the distance; of an orthographic camera a length. first_merged: index of the first stored
 #: splat that is a merged one. rows_without_lines: of the storage before that, which the texture of clip lines lacks.
 #: Where many instances are drawn, first_instance: the first row of their table; first, stride: the triangles of each.
+#: first_noted: the number of its first stored splat, for visibility to note which is nearest; -1: it is not noted.
 DRAW: Block = (
     "Draw",
     "draw",
@@ -52,6 +53,7 @@ DRAW: Block = (
         ("float", "first_instance"),
         ("float", "first"),
         ("float", "stride"),
+        ("float", "first_noted"),
     ),
 )
 
