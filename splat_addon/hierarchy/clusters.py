@@ -11,9 +11,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..runs import ranges
+from ..runs import ranges, sorted_with_order
 from .nodes import PORTION, Leaves, Table
-from .ordering import BITS, sorted_with_order
+from .ordering import BITS
 
 #: In cells: the gap in depth after which another sheet begins, and the maximum extent of a sheet.
 GAP = 0.25
@@ -71,7 +71,7 @@ def _sorted(
         keys[..., part] = _packed(columns, bits) if fits else columns
     is_first = np.ones(len(rows), bool)
     if fits:
-        keys, order = sorted_with_order(keys, sum(bits))
+        order, keys = sorted_with_order(keys, 1 << sum(bits))
         np.greater(np.diff(keys), gap, out=is_first[1:])
         return order, is_first, keys
     order = np.lexsort(keys[::-1])

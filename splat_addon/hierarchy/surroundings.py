@@ -15,11 +15,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..runs import ranges
+from ..runs import ranges, sorted_with_order
 from .families import dot
 from .merged_lines import as_planes
 from .nodes import Nodes, Table
-from .ordering import sorted_with_order
 from .runs import Runs
 
 #: Minimum cosine between the normals of surfels that mix in a picture, and of those without a crease between them.
@@ -100,7 +99,8 @@ def voxels(positions: np.ndarray, cell: float) -> tuple[np.ndarray, np.ndarray]:
     """(n,) voxels of the positions in ascending order, and the order that sorts them."""
     places = (positions - positions.min(axis=1)[:, None]) / np.float32(cell)
     x, y, z = np.minimum(places, (1 << _BITS) - 3).astype(np.int64) + 1
-    return sorted_with_order(x << 2 * _BITS | y << _BITS | z, 3 * _BITS)
+    order, voxels = sorted_with_order(x << 2 * _BITS | y << _BITS | z, 1 << 3 * _BITS)
+    return voxels, order
 
 
 class _Pairs:

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from splat_addon.hierarchy import build_hierarchy
-from splat_addon.hierarchy.ordering import sorted_with_order, spatial_order
+from splat_addon.hierarchy.ordering import spatial_order
 from splat_addon.quaternions import quaternion_axes
 from splat_addon.reference import scenes
 from splat_addon.reference.metrics import psnr
@@ -112,14 +112,6 @@ def test_levels_lie_after_the_surfels_and_move_none():
         every = concatenate([surfels, levels.nodes])
         for own, with_levels in zip(storage.pack(surfels, alone)[0], storage.pack(every, both)[0], strict=True):
             np.testing.assert_array_equal(with_levels[: len(own) - 1], own[:-1])
-
-
-def test_a_sort_by_the_word_is_the_stable_one():
-    keys = np.random.default_rng(1).integers(0, 1000, 5000)
-    for bits in (10, 55):  # with 10, keys and numbers fit into one word; with 55 they do not
-        ordered, order = sorted_with_order(keys, bits)
-        np.testing.assert_array_equal(order, np.argsort(keys, kind="stable"))
-        np.testing.assert_array_equal(ordered, np.sort(keys))
 
 
 def test_storage_halves_the_memory():

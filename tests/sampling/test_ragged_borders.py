@@ -7,7 +7,6 @@ import pytest
 from splat_addon.clip_lines import kept
 from splat_addon.sampling.edges import ragged_borders
 from splat_addon.sampling.edges.meetings import line_along, nearest_on_segment
-from splat_addon.sampling.edges.ordering import order_of
 from splat_addon.sampling.edges.ragged_borders import ALL, BOTH, EITHER, FIRST, two_lines
 
 PLACES, WEIGHTS = ragged_borders.places()
@@ -80,10 +79,3 @@ def test_the_splat_of_a_corner_ends_at_its_two_edges():
     assert best.tolist() == [1] and kind.tolist() == [EITHER] and not beyond.any()
     outside = kept(PLACES, np.repeat(turned.T[None], len(PLACES), axis=0), np.full(len(PLACES), True))
     assert np.array_equal(outside, ~((PLACES @ lines[:2] + lines[2]) > 0).all(axis=1))
-
-
-@pytest.mark.parametrize("largest", [0, 3, 1 << 20, (1 << 62) - 1])
-def test_equal_keys_keep_their_order(largest):
-    keys = np.random.default_rng(0).integers(0, largest + 1, 5000)
-    assert np.array_equal(order_of(keys), np.argsort(keys, kind="stable"))
-    assert len(order_of(keys[:0])) == 0

@@ -12,13 +12,12 @@ from functools import partial
 
 import numpy as np
 
-from ...runs import expand
+from ...runs import expand, grouped
 from ...workers import run_all
 from ..mesh.connectivity import connectivity
 from ..mesh.joining import have_same_values
 from ..mesh.triangle_mesh import TriangleMesh, corner_indices, corners_at, doubled_areas, triangle_chunks
 from .calm_vertices import calm_vertices
-from .ordering import grouped
 
 #: Radians; planes that differ by more make a crease.
 DEFAULT_CREASE_ANGLE = math.radians(20)

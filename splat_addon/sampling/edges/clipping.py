@@ -14,12 +14,12 @@ from functools import partial
 import numpy as np
 
 from ...clip_lines import CLIP_FIELDS, are_reflex, pack_lines
+from ...runs import order_of
 from ...workers import in_order
 from ..ldc.grid import Grid
 from ..table import SampleTable
 from .borders import Borders
 from .meetings import BEYOND, Images, Meetings, meetings
-from .ordering import order_of
 from .overhang import TIMES, made_smaller
 from .ragged_borders import ALL, BOTH, EITHER, FIRST, two_lines
 

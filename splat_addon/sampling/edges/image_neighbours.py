@@ -15,10 +15,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...runs import expand, steps
+from ...runs import expand, order_of, runs_of_equal, steps
 from ..ldc.grid import BLOCK, Grid
 from ..ldc.scan_conversion import batches
-from .ordering import order_of, runs_of_equal
 
 #: Around the image, in cells: samples lie in it, other surfels and edges at most this far outside.
 _MARGIN = 3

@@ -8,10 +8,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ...runs import expand
+from ...runs import expand, order_of
 from ..ldc.scan_conversion import batches
 from ..mesh.triangle_mesh import TriangleMesh
-from .ordering import order_of
 
 #: Cells along the longest edge of the mesh.
 _CELLS = 128

@@ -15,8 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...large_surfels import LARGE_SIZE, STEPS_OF_LARGE
-from ...runs import expand, steps
-from ..edges.ordering import order_of
+from ...runs import expand, order_of, steps
 from ..ldc.scan_conversion import Spans
 
 #: Edge of a block in cells, an odd number -> cells around it that must lie in the same face, because its splat reaches

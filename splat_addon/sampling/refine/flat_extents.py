@@ -12,9 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...runs import grouped
 from ..attributes.lifts import LEAST_LIFT, MOST_LIFT, edge_bulges
 from ..edges.borders import survey_edges, unit_normals
-from ..edges.ordering import grouped
 from ..ldc.grid import longest_edge
 from ..ldc.reductions import DEFAULT_GRAZING_ANGLE, find_reduction
 from ..materials.texture_mapping import is_texture_mapped

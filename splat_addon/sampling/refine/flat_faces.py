@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...runs import grouped
 from ...vectors import unit
 from ..attributes.lifts import LEAST_LIFT, MOST_LIFT
 from ..edges.borders import Borders, EdgeSurvey
-from ..edges.ordering import grouped
 from ..materials.surfaces import Computed, Surface, Texture, VertexColors
 from ..mesh.connectivity import part_labels
 from ..mesh.triangle_mesh import TriangleMesh, corner_indices

@@ -7,7 +7,7 @@ from itertools import product
 
 import numpy as np
 
-from ..edges.ordering import order_of
+from ...runs import order_of
 from ..ldc.scan_conversion import Spans
 from ..mesh.triangle_mesh import triangle_chunks
 

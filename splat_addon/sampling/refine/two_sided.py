@@ -14,9 +14,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ...quaternions import axes_columns
-from ...runs import expand
+from ...runs import expand, order_of
 from ..attributes.ellipses import MAX_STRETCH
-from ..edges.ordering import order_of
 from ..ldc.depth_cube import rows_of
 from ..ldc.scan_conversion import Spans, batches
 from ..mesh.connectivity import connectivity
