@@ -182,7 +182,7 @@ class Pass:
 
     @cached_property
     def wiring(self) -> Wiring:
-        """Of its parts; found once for all passes with equal ones."""
+        """What its parts read and fill; found once for all passes with equal parts."""
         return _wiring(self.parts)
 
     def all(self, *fields: str) -> tuple:

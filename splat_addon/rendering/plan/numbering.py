@@ -23,7 +23,7 @@ class Noted(NamedTuple):
 
 
 def noted(tile: TileContext) -> dict[int, Noted]:
-    """Those of each kind, by the id of one instance of it, which the plan keeps."""
+    """What is noted of each kind, by the id of one instance of it, which the plan keeps."""
     return tile.shared.kept("noted", lambda: _found(tile))
 
 
@@ -37,7 +37,7 @@ def _found(tile: TileContext) -> dict[int, Noted]:
 
 
 def first_noted(tile: TileContext, placed: DrawItem) -> float:
-    """As of `uniforms.DRAW`."""
+    """The value `first_noted` of `uniforms.DRAW`."""
     if not placed.items.show_nearest:
         return -1.0
     table = placed.items.table

@@ -66,7 +66,7 @@ class FromEye:
         return box_of(low, table.along(axes, shapes.high - shapes.low))
 
     def taken(self, rows: np.ndarray, table: InstanceTable) -> FromEye:
-        """Of some of them. rows: (m,) numbers or (n,) bool. table: these instances."""
+        """What is seen of some of them. rows: (m,) numbers or (n,) bool. table: these instances."""
         made = FromEye(table, self._camera)
         if "corners" in self.__dict__:
             made.corners = corner_by_corner(self.corners, rows)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The instances of a scene as arrays, so that thousands of them are looked at together.
 
-Of each there is a row of numbers and its matrix; the rest is found when something asks for it, of those it is asked of.
+Of each there is a row of numbers and its matrix; the rest is found when something needs it, of those instances alone.
 """
 
 from __future__ import annotations
@@ -104,7 +104,7 @@ class InstanceTable:
 
     @property
     def matrices(self) -> np.ndarray:
-        """(n, 3, 4) float64, object to world, made anew."""
+        """(n, 3, 4) float64, object to world; a new array."""
         return self.every.matrices[self.rows].astype(np.float64)
 
     @property
@@ -114,7 +114,7 @@ class InstanceTable:
 
     @property
     def columns(self) -> np.ndarray:
-        """(4, 3, n) float64, the images of the three axes and of the origin, made anew."""
+        """(4, 3, n) float64, the images of the three axes and of the origin; a new array."""
         return np.ascontiguousarray(self.every.matrices[self.rows].transpose(2, 1, 0), np.float64)
 
     @cached_property
@@ -207,7 +207,7 @@ class InstanceTable:
 
     @property
     def world_corners(self) -> np.ndarray:
-        """(n, 8, 3) float64 corners of boxes around them, in world space, made anew."""
+        """(n, 8, 3) float64 corners of boxes around them, in world space; a new array."""
         columns, shapes = self.columns, self.prototypes
         axes = columns[:3]
         low = columns[3] + self.along(axes, shapes.low + shapes.origins).sum(axis=0)
