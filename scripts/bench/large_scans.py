@@ -2,8 +2,9 @@
 """A LAZ file of any size: a first look at few of its points, and all of them stored in a file of blocks.
 
 The file has a hilly terrain with houses, flown in ten strips, points 0.1 apart; it is written in pieces, unless --file
-names one that is there. *Few* are read and become surfels in memory; *all* become surfels in portions. *Processor* is
-the time of all threads, which other programs change little; half of it is what two idle cores would take at best.
+names one that is there, such as a real scan. *Few* are read and become surfels in memory; *import* does so in Blender,
+and *picture* is its first one there, as the import shows it; *all* become surfels in portions. *Processor* is the time
+of all threads, which other programs change little; half of it is what two idle cores would take at best.
 """
 
 from __future__ import annotations
@@ -15,13 +16,14 @@ from time import perf_counter, process_time
 
 import numpy as np
 
+from environment import Problem
 from scan_files.formats import las_rows
 from splat_addon.interchange import point_pieces, read_contents
 from splat_addon.sampling import surfels_from_points
 from splat_addon.streaming import write_points
 from splat_addon.surfels import Surfels
 
-QUICK = {"points": 20_000, "few": 2000}
+QUICK = {"points": 20_000, "few": 2000, "size": (48, 36), "steps": ("few", "all", "import", "picture")}
 #: Points that are written at once, strips of the flight, and metres between points.
 _PIECE, _STRIPS, _SPACING = 1_000_000, 10, 0.1
 _CORNER = np.array([400_000.0, 5_600_000.0, 0.0])
@@ -31,6 +33,9 @@ def arguments(parser) -> None:
     parser.add_argument("--points", type=int, default=1_000_000)
     parser.add_argument("--few", type=int, default=300_000, help="points of the first look")
     parser.add_argument("--file", type=Path, help="a LAZ file; it is written if it is not there, and kept")
+    parser.add_argument("--steps", nargs="+", choices=STEPS, default=("few", "all"), help="what to measure")
+    parser.add_argument("--size", type=int, nargs=2, default=(800, 600), metavar=("WIDTH", "HEIGHT"))
+    parser.add_argument("--samples", type=int, default=1, help="of a pixel of the picture")
 
 
 def run(options, report) -> None:
@@ -40,7 +45,7 @@ def run(options, report) -> None:
     count = point_pieces(file).count
     report.header(how=f"{count:,} points, {file.stat().st_size / 1e6:,.0f} MB")
     columns = ["what", "points", "surfels", "seconds", "processor", "MB at most"]
-    report.table(columns, (measured(options, file, report.out, step) for step in (few, all_of_them)))
+    report.table(columns, (measured(options, file, report.out, STEPS[name]) for name in options.steps))
 
 
 def measured(options, file: Path, out: Path, step) -> list:
@@ -57,6 +62,33 @@ def few(options, file: Path, out: Path) -> tuple[str, int, int]:
     return "few of them", len(points.positions), len(surfels)
 
 
+def imported(options, file: Path, out: Path) -> tuple[str, int, int]:
+    # not sooner, as Blender takes memory of its own
+    import bpy
+
+    import splat_addon
+
+    splat_addon.register()
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    bpy.ops.import_scene.surfels_ply(filepath=str(file), most_points=options.few)
+    return "few, imported into Blender", options.few, len(bpy.context.object.data.vertices)
+
+
+def pictured(options, file: Path, out: Path) -> tuple[str, int, int]:
+    import bpy
+
+    from measuring.blender_scene import rendered
+
+    scene = bpy.context.scene
+    if not bpy.data.objects:
+        raise Problem("The picture shows what was imported: measure the step import before it.")
+    scene.render.resolution_x, scene.render.resolution_y = options.size
+    scene.surfel_splatting.samples = options.samples
+    rendered(scene)
+    count = len(bpy.context.object.data.vertices)
+    return f"the next picture in Blender, {options.samples} samples", count, count
+
+
 def all_of_them(options, file: Path, out: Path) -> tuple[str, int, int]:
     pieces = point_pieces(file)
     parts = Parts(pieces)
@@ -66,6 +98,10 @@ def all_of_them(options, file: Path, out: Path) -> tuple[str, int, int]:
     )
     (out / "scan.surfelblocks").unlink()
     return "all, stored", pieces.count, stored
+
+
+#: Memory at most is that of the steps before, too.
+STEPS = {"few": few, "import": imported, "picture": pictured, "all": all_of_them}
 
 
 class Parts:

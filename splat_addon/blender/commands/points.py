@@ -12,17 +12,19 @@ import bpy
 
 from ...claims import claimed
 from ...interchange import FLOAT_COLORS
-from ..conversion.file_import import FileImport, Reading
+from ..conversion.blocks_opening import holds_blocks, open_blocks
+from ..conversion.file_import import FileImport, Reading, show_scan
 from ..conversion.points_conversion import PointsBatch
 from ..conversion.points_settings import PointsProperties, keywords, viewpoint
 from ..conversion.series import begin_series, first_shown
 from ..conversion.source_record import SurfelPointsSettings
+from ..geometry.attributes import read_surfels
 from ..geometry.points_extraction import has_points
 from ..ids import OBJECT_SETTINGS
 from ..operators.file_paths import file_sentence
 from ..scan_color_settings import COLOR_ITEMS
 from .convert import is_blend_there, named, place, result
-from .out_paths import made_room
+from .out_paths import file_at, made_room
 from .written_files import save_blend
 
 HELP = "make surfels of scans and other points, in a new file"
@@ -46,7 +48,8 @@ _OF_FILES = {
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", required=True, help="the new .blend, or its FOLDER/")
     source = parser.add_mutually_exclusive_group()
-    source.add_argument("files", nargs="*", default=[], metavar="FILE", help="scans, Gaussian splats or surfels")
+    about = "scans, Gaussian splats or surfels, also in blocks"
+    source.add_argument("files", nargs="*", default=[], metavar="FILE", help=about)
     source.add_argument("--objects", nargs="+", help="names; without them and files, all visible points")
     parser.add_argument(
         "--most",
@@ -106,7 +109,7 @@ def run(options: argparse.Namespace) -> Iterator[Path]:
     converted."""
     if not options.files:
         refuse_those_of_files(options)
-    out = result(options)
+    out = file_at(options.out, ".blend", Path(options.files[0]).stem) if options.files else result(options)
     with claimed(made_room(out)):
         if not options.again and is_blend_there(out):
             print(f"there already: {out}", flush=True)
@@ -125,6 +128,9 @@ def _import_files(options: argparse.Namespace) -> None:
         bpy.ops.wm.read_homefile(use_empty=True)
     for path in options.files:
         path, scene = str(Path(path).absolute()), bpy.context.scene
+        if holds_blocks(path):
+            _open(path, options)
+            continue
         shown, offset = first_shown(path, scene) if options.series else (path, 0)
         work = FileImport(shown, options, scene, Reading.of(options))
         try:
@@ -141,6 +147,24 @@ def _import_files(options: argparse.Namespace) -> None:
         print(f"{work.name}: {len(work.surfels):,} surfels", flush=True)
         for note in work.notes:
             print(f"{work.name}: {note}", flush=True)
+
+
+def _open(path: str, options: argparse.Namespace) -> None:
+    """Let an object read its surfels from a file of blocks. Raises ValueError with a sentence."""
+    name = Path(path).name
+    if options.series or options.most_points:
+        raise ValueError(f"{name} is a file of blocks, which views read as they need it; leave out --series, --most.")
+    try:
+        made, count, notes = open_blocks(bpy.context, path, name, is_own=False)
+        surfels = read_surfels(made.data)[0]
+    except (ValueError, OSError) as error:
+        raise ValueError(f"{name}: {file_sentence(error)}") from error
+    if not options.plain:
+        notes += show_scan(bpy.context, made, surfels.positions)
+    if options.color_by:
+        getattr(made, OBJECT_SETTINGS).color_by = options.color_by
+    for note in (f"{count:,} surfels", *notes):
+        print(f"{name}: {note}", flush=True)
 
 
 def _convert_objects(options: argparse.Namespace) -> None:

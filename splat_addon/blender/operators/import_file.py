@@ -13,14 +13,13 @@ import bpy
 import numpy as np
 from bpy.props import BoolProperty, CollectionProperty, EnumProperty, IntProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper, poll_file_object_drop
-from mathutils import Matrix
 
 from ...interchange import SHARED_SUFFIXES, SUFFIXES, numbered_files, text_columns_of
 from ...streaming import id_of
-from ...streaming.layout import MAGIC, SUFFIX
-from ..conversion.file_import import FileImport, Reading, doubts_of_place, show_scan
+from ...streaming.layout import SUFFIX
+from ..conversion.blocks_opening import holds_blocks, open_blocks
+from ..conversion.file_import import FileImport, Reading, show_scan
 from ..conversion.file_storing import FileStoring
-from ..conversion.placement import placed
 from ..conversion.points_settings import (
     PointsProperties,
     draw_gaussian_properties,
@@ -29,10 +28,10 @@ from ..conversion.points_settings import (
     viewpoint,
 )
 from ..conversion.series import begin_series, first_shown
-from ..conversion.surfel_objects import active_collection, add_object_of, select_only
-from ..geometry.attributes import read_surfels, set_offset
-from ..geometry.scene_offset import Surroundings, keep_offset, taken_from
-from ..geometry.surfel_files import keep_coarsest, relative_path
+from ..conversion.surfel_objects import select_only
+from ..geometry.attributes import read_surfels
+from ..geometry.scene_offset import Surroundings, keep_offset
+from ..geometry.surfel_files import relative_path
 from ..ids import IMPORT_FILE
 from ..spoken import said
 from .file_paths import absolute, file_sentence, path_property
@@ -176,19 +175,11 @@ contents tell"""
         self.filepath = path
         return self._begin(context)
 
-    def _holds_blocks(self) -> bool:
-        """Whether the file is one of surfels in blocks, by its contents, or else by its name, so that a damaged one is
-        told so."""
-        with suppress(OSError, ValueError), open(absolute(self.filepath), "rb") as stream:
-            if stream.read(len(MAGIC)) == MAGIC:
-                return True
-        return self._name.endswith(SUFFIX)
-
     def _begin(self, context):
         path = absolute(self.filepath)
-        if self.is_series and (self.keeps_in_file or self._holds_blocks()):
+        if self.is_series and (self.keeps_in_file or holds_blocks(path)):
             raise ValueError(said("The files of a series are shown from memory; they cannot be files of blocks"))
-        if self._holds_blocks():
+        if holds_blocks(path):
             return Opening()
         if self.is_series:
             path, self._frame_offset = first_shown(path, context.scene)
@@ -240,17 +231,9 @@ contents tell"""
 
     def _open(self, context, path: str, is_own: bool) -> int:
         """Add an object whose surfels are in a file of blocks; returns how many. Raises OSError or ValueError."""
-        mesh = bpy.data.meshes.new(Path(self._name).stem)
-        try:
-            count, origin = keep_coarsest(mesh, path, relative_path(path), is_own)
-            place, offset = placed(Matrix(), origin - taken_from(context.scene, origin))
-        except BaseException:
-            bpy.data.meshes.remove(mesh)
-            raise
-        set_offset(mesh, offset)
-        made = add_object_of(mesh, place, [active_collection(context)])
+        made, count, notes = open_blocks(context, path, self._name, is_own)
         select_only(context, [made])
-        self._tell(doubts_of_place(made, read_surfels(mesh)[0].scales))
+        self._tell(notes)
         return count
 
     def _sentence(self, error):

@@ -47,6 +47,20 @@ def test_plain_files_are_surfels_alone_and_their_colors_may_be_chosen(surfels_co
     assert not bpy.context.scene.surfel_splatting.use_eye_dome
 
 
+def test_a_file_of_blocks_is_read_as_views_need_it(surfels_command, tmp_path):
+    plane(tmp_path / "a.xyz", 0)
+    blocks = tmp_path / "a.surfelblocks"
+    assert surfels_command("store", "--file", tmp_path / "a.xyz", "--out", blocks)[0] == 0
+    code, said = surfels_command("points", blocks, "--color-by", "height", "--out", f"{tmp_path}/")
+    assert code == 0 and "a.surfelblocks: 225 surfels" in said
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "a.blend"))
+    made = bpy.data.objects["a"]
+    assert made.data.surfel_splatting.file == str(blocks) and bpy.context.scene.camera
+    assert made.surfel_splatting.color_by == "HEIGHT"
+    code, said = surfels_command("points", blocks, "--most", 9, "--out", tmp_path / "b.blend")
+    assert code == 1 and "leave out --series, --most" in said
+
+
 def test_columns_of_text_may_be_said_and_points_be_fewer(surfels_command, tmp_path):
     (tmp_path / "a.xyz").write_text("".join(f"{k % 40} 7 {k // 40} 0\n" for k in range(1600)))
     options = "--columns", "y - x z", "--most", 400, "--isolated", "keep", "--plain", "--out", tmp_path / "a.blend"
