@@ -24,6 +24,9 @@ _ALPHAS = ("alpha", "a")
 #: that is brighter than white.
 _BRIGHTEST, _FEW = 10.0, 0.01
 
+#: More numbers than this are decoded by a table of all that two bytes hold.
+_MANY = 1 << 16
+
 #: What float colours can mean.
 FLOAT_COLORS = ("DISPLAY", "LINEAR")
 
@@ -110,14 +113,19 @@ def display_color(columns: dict[str, np.ndarray], floats: str = "DISPLAY") -> tu
     # the alpha of integers is on the scale of the colours, that of floats often is not
     scale = [*channels, *(alpha for alpha in alphas if alpha.dtype.kind != "f")]
     values = [
-        column.astype(np.float64)
-        if _is_linear(column, floats)
-        else srgb_to_linear(_not_negative(column) / _white(column, scale))
+        column.astype(np.float64) if _is_linear(column, floats) else _decoded(column, _white(column, scale))
         for column in channels
     ]
     alpha = fractions(alphas[0], channels) if alphas else np.ones(len(values[0]))
     with np.errstate(over="ignore"):
         return np.column_stack([*values, alpha]).astype(np.float32), _assumed(channels, scale, floats)
+
+
+def _decoded(column: np.ndarray, white: float) -> np.ndarray:
+    """Scene-linear values of display values. Many small integers are decoded once each."""
+    if column.dtype.kind == "u" and column.dtype.itemsize <= 2 and len(column) > _MANY:
+        return srgb_to_linear(np.arange(int(column.max()) + 1) / white)[column]
+    return srgb_to_linear(_not_negative(column) / white)
 
 
 def with_white_1(columns: dict[str, np.ndarray], sample: dict[str, np.ndarray], floats: str) -> dict[str, np.ndarray]:

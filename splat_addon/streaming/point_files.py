@@ -22,6 +22,9 @@ _ASIDE = 0.001
 #: Points whose neighbours are looked for, to find how far away neighbours are, and how much farther to look.
 _PROBES, _FARTHER = 24, 1.5
 
+#: They are looked for among one in this many of the points.
+_SHARE = 8
+
 #: Cells along the longest side of the grid that tells what is near the points of a file.
 _CELLS = 128
 
@@ -118,13 +121,13 @@ class PointFiles:
 
 def _reach(positions: np.ndarray, neighbours: int) -> float:
     """How far from (N, 3) points their neighbours may be, by some of them; 0 for points all at one place."""
+    share = _SHARE if len(positions) > _SHARE * _SHARE * neighbours else 1
     probes = positions[:: max(len(positions) // _PROBES, 1)][:_PROBES]
-    rank, found = min(neighbours, len(positions) - 1), []
+    columns = np.ascontiguousarray(positions[::share].T)
+    rank, found = min(-(-neighbours // share), columns.shape[1] - 1), []
     for probe in probes:
-        squares = np.zeros(len(positions))
-        for axis in range(3):
-            squares += (positions[:, axis] - probe[axis]) ** 2
-        found.append(np.partition(squares, rank)[rank])
+        away = columns - probe[:, None]
+        found.append(np.partition(np.einsum("in,in->n", away, away), rank)[rank])
     return _FARTHER * float(np.sqrt(np.median(found) * 4))
 
 

@@ -8,6 +8,7 @@ import plyfile
 import pytest
 
 from splat_addon.interchange import Points, read_contents
+from splat_addon.interchange.columns import display_color
 
 
 @pytest.mark.parametrize("text", [False, True])
@@ -25,6 +26,14 @@ def test_positions_normals_radii_and_byte_colours_are_read(tmp_path, text, byte_
     assert points.normals.tolist() == [[0, 0, 1], [1, 0, 0]]
     assert points.radii.tolist() == [0.5, 0.25]
     assert np.allclose(points.colors, [(0, 0.5028865, 1, 1), (1, 0, 0, 1)])
+
+
+def test_many_numbers_of_two_bytes_are_decoded_as_few_are():
+    few = np.array([0, 1, 2570, 65535], np.uint16)
+    colors = [
+        display_color({name: column for name in ("red", "green", "blue")})[0] for column in (few, np.tile(few, 20_000))
+    ]
+    assert (colors[1] == np.tile(colors[0], (20_000, 1))).all() and (np.diff(colors[0][:, 0]) > 0).all()
 
 
 def test_what_is_not_in_the_file_is_none(ply):

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...runs import ranges
+from ...runs import ranges, sorted_with_order
 
 #: Cell numbers up to this can be added and multiplied in int64 without overflow.
 _MAX_KEY = 2**62
@@ -39,8 +39,8 @@ class Cells:
         self.size = size / self.unit
         scaled = [column / size for column in positions.T]
         keys, self._strides = _cell_keys(scaled)
-        self.order = np.argsort(keys, kind="stable").astype(np.int32)
-        keys = keys[self.order]
+        order, keys = sorted_with_order(keys, int(keys.max(initial=0)) + 1)
+        self.order = order.astype(np.int32)
         self.first = np.flatnonzero(np.diff(keys, prepend=-1))
         self._keys = keys[self.first]
         self.first = np.append(self.first, len(keys))
@@ -149,4 +149,5 @@ def spatial_order(positions: np.ndarray) -> np.ndarray:
     corner = positions.min(axis=0)
     extent = float((positions - corner).max())
     size = 8 * extent / np.sqrt(len(positions)) if extent > 0 else 1.0
-    return np.argsort(_cell_keys([column / size for column in (positions - corner).T])[0], kind="stable")
+    keys, _ = _cell_keys([column / size for column in (positions - corner).T])
+    return sorted_with_order(keys, int(keys.max()) + 1)[0]

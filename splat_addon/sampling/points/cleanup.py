@@ -33,6 +33,9 @@ _FEWEST_IN_GROUP, _GAP = 4, 4.0
 #: and this many spacings, which the tip of a clean scan is not.
 _OFF_NOISE, _OFF_SPACINGS = 3.3, 1.2
 
+#: An odd number whose bits look random, that of Knuth's multiplicative hashing for 64 bits.
+_MULTIPLIER = np.uint64(0x9E3779B97F4A7C15)
+
 #: Points are overlapped by those of scanners at most this share of the distance away, whose scan is four times as
 #: dense, if most of this many nearest neighbours are such points. With more, it would reach beyond the denser scan.
 _NEARER, _OVERLAPPING = 0.5, 8
@@ -46,16 +49,29 @@ def finite_points(positions: np.ndarray) -> np.ndarray:
 def first_of_each(positions: np.ndarray) -> np.ndarray:
     """(M,) ascending indices of the points that are not exact duplicates of an earlier one; positions (N, 3),
     finite."""
-    order = np.argsort(positions[:, 0], kind="stable")
-    same_x = np.diff(positions[order, 0]) == 0
-    in_a_run = np.append(same_x, False) | np.insert(same_x, 0, False)
-    suspects = np.sort(order[in_a_run])
+    suspects = np.flatnonzero(_share_a_hash(positions))
     # lexsort is stable, so the first of equal points stays first
     suspects = suspects[np.lexsort(positions[suspects].T)]
     repeats = (np.diff(positions[suspects], axis=0) == 0).all(axis=1)
     keep = np.ones(len(positions), bool)
     keep[suspects[1:][repeats]] = False
     return np.flatnonzero(keep)
+
+
+def _share_a_hash(positions: np.ndarray) -> np.ndarray:
+    """(N,) bool: which of (N, 3) positions may equal another; few others do."""
+    hashes = np.zeros(len(positions), np.uint64)
+    for column in positions.T:
+        # 0 is added because it has two signs
+        hashes ^= (column + 0.0).view(np.uint64)
+        hashes *= _MULTIPLIER
+        hashes ^= hashes >> np.uint64(32)
+    found = np.sort(hashes)
+    repeated = np.unique(found[1:][found[1:] == found[:-1]])
+    if not len(repeated):
+        return np.zeros(len(positions), bool)
+    at = np.minimum(np.searchsorted(repeated, hashes), len(repeated) - 1)
+    return repeated[at] == hashes
 
 
 def isolated_points(positions: np.ndarray, neighbours: np.ndarray, distances: np.ndarray) -> np.ndarray:

@@ -16,7 +16,7 @@ from functools import partial
 
 import numpy as np
 
-from ...runs import ranges
+from ...runs import ranges, sorted_with_order
 from ...workers import in_order
 from .cells import Cells, fine_cell_size
 from .distances import CUT_OFF, Block, exactly_nearest
@@ -92,7 +92,7 @@ class _Found:
     def keep(self, points: np.ndarray, neighbours: np.ndarray, squares: np.ndarray, unit: float):
         """squares: of distances, in units."""
         self.neighbours[points] = neighbours
-        self.distances[points] = np.sqrt(squares, dtype=np.float64) * unit
+        self.distances[points] = np.sqrt(squares) * np.float32(unit)
 
 
 class _Thinned:
@@ -123,7 +123,9 @@ def _searched(
     # Points in the last cells may be far from others in the same cell.
     queries = np.flatnonzero((candidates[cells.cell_of_query] >= worth) & ~cells.is_far)
     own = cells.cell_of_query[queries]
-    queries = queries[np.argsort(candidates[own] // _ALIKE * len(candidates) + own, kind="stable")]
+    likeness = candidates // _ALIKE
+    order, _ = sorted_with_order(likeness[own] * len(candidates) + own, (likeness.max(initial=0) + 1) * len(candidates))
+    queries = queries[order]
 
     def job(part: slice) -> int:
         good = certain[queries[part]] = look(queries[part])

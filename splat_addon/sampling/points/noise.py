@@ -65,7 +65,10 @@ def smoothed_normals(
     Returns (n, 3) unit normals in either direction, (n, 3) a point on each one's plane, relative to the noisy point,
     and (n,) bool, which of the normals are not to be trusted.
     """
-    middles, thick = planes.middles + positions.T, thicknesses(planes.moments).astype(np.float32)
+    middles, thick, is_near = planes.middles + positions.T, *np.zeros((2, len(positions)), np.float32)
+    is_near[rows] = is_near[neighbours[rows]] = 1
+    near = np.flatnonzero(is_near)
+    thick[near] = thicknesses(planes.moments[:, near])
     # rows of 32 bytes are gathered at once
     moments = np.zeros((len(thick), 8), np.float32)
     moments[:, : len(PAIRS)] = planes.moments.T
@@ -80,7 +83,7 @@ def smoothed_normals(
         heights[part] = mean.T - positions[own]
         is_thick[part] = thick.take(near).min(axis=0) > _THICK
 
-    in_portions(len(rows), CHUNK // 8, widened, lambda share: report(0.5 * share))
+    in_portions(len(rows), CHUNK // 2, widened, lambda share: report(0.5 * share))
     _average(
         directions, neighbours[:, :_AROUND], rows, _alike_or_opposite, report=lambda share: report(0.5 + 0.5 * share)
     )
@@ -121,7 +124,7 @@ def _average(
         made[:, part] = sums / np.sqrt(np.einsum("in,in->n", sums, sums))
 
     for _ in range(rounds):
-        in_portions(len(rows), CHUNK // 2, averaged, report)
+        in_portions(len(rows), CHUNK, averaged, report)
         directions[:, rows] = made
 
 

@@ -99,7 +99,8 @@ def least_around(values: np.ndarray, neighbours: np.ndarray) -> np.ndarray:
     least = values.copy()
 
     def job(part: slice):
-        np.minimum(values[part], values[neighbours[part]].min(axis=1), out=least[part])
+        near = values.take(neighbours[part].T.astype(np.intp, order="C"))
+        np.minimum(values[part], near.min(axis=0), out=least[part])
 
     in_portions(len(values), CHUNK, job)
     return least

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from splat_addon.sampling import surfels_from_points
+from splat_addon.sampling.points.cleanup import first_of_each
 
 
 def test_points_that_are_not_finite_are_counted_and_left_out(grid_points):
@@ -23,6 +24,11 @@ def test_points_that_repeat_another_are_counted_and_the_first_is_kept(grid_point
     surfels, report = surfels_from_points(np.concatenate([points, points[::10]]), colors=colors)
     assert report.duplicates == 40 and len(surfels) == 400
     assert (surfels.colors[:, :3] == 1).all()
+
+
+def test_points_of_the_same_coordinates_in_another_order_or_of_another_sign_do_not_repeat_each_other():
+    points = np.array([(1, 2, 3), (2, 1, 3), (-1, 2, 3), (1, 2, -3), (0, 0, 0), (-0.0, 0, 0), (1, 1, 0), (1, 2, 3)])
+    assert first_of_each(points).tolist() == [0, 1, 2, 3, 4, 6]
 
 
 @pytest.mark.parametrize(("choice", "kept"), [("drop", 400), ("keep", 402)])
