@@ -43,7 +43,7 @@ TABS = {
 
 #: kind of data -> the modules that read it to draw a picture
 READERS = {
-    "light": ("export/shading",),
+    "light": ("export/lamps",),
     "camera": ("cameras",),
     "render": (
         "cameras",

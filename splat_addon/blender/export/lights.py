@@ -9,10 +9,10 @@ from ...rendering import Light
 from ...rendering.scene.light_probe import LightProbe
 from ..conversion.placement import finite_matrix
 from . import passed_over
+from .lamps import light_of
 from .light_linking import LightSets
 from .light_probes import is_sphere_probe, light_probe_of
 from .notes import Notes
-from .shading import light_of
 
 
 def lights_of(depsgraph: bpy.types.Depsgraph, notes: Notes) -> tuple[list[Light], LightSets, list[LightProbe]]:

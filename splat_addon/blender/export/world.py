@@ -24,7 +24,7 @@ from ..materials.surface_shaders import Part, Shader
 from ..materials.texture_images import UnreadableError, fingerprint, linear_pixels, odd_pixels_sentence, settings_of
 from . import passed_over
 from .notes import Notes
-from .shading import BLACK, color_times_strength, finite_radiance
+from .radiance import BLACK, color_times_strength, finite_radiance
 from .world_shaders import Backgrounds, backgrounds
 
 Color = tuple[float, float, float]

@@ -9,6 +9,9 @@ import numpy as np
 #: Lengths and coordinates in world units, and factors by which matrices lengthen.
 MIN_LENGTH, MAX_LENGTH = 1e-38, 1e38
 
+#: A matrix whose shortest axis is below this share of its longest leaves no direction for a normal.
+FLATTEST = 1e-12
+
 #: Radiance and colours, per channel: more would overflow float32 after lighting.
 MAX_RADIANCE = 1e30
 

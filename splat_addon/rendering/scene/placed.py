@@ -17,9 +17,8 @@ from .boxes import CORNERS
 from .camera import Camera
 from .light import MAX_LIGHT_SETS
 from .material import GlossTexture, Material, NormalTexture, SurfaceTexture
-from .numbers import MAX_INDEX, MAX_LENGTH, MIN_LENGTH, check_lengths, check_range
+from .numbers import FLATTEST, MAX_INDEX, MAX_LENGTH, MIN_LENGTH, check_lengths, check_range
 from .polygons import Polygons
-from .table import FLATTEST
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,23 +8,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ...surfels import Surfels
 from .boxes import box_of
+from .camera import Camera
 from .from_eye import FromEye
 from .kinds import Kind, Kinds
+from .numbers import FLATTEST
+from .placed import Placed
 from .placements import Placements, joined, placements
 from .prototypes import Prototypes
-
-if TYPE_CHECKING:
-    from .camera import Camera
-    from .placed import Placed
-
-#: A matrix whose shortest axis is below this share of its longest leaves no direction for a normal.
-FLATTEST = 1e-12
 
 #: Instances that are looked at together where more would need much memory.
 AT_ONCE = 1 << 13
