@@ -100,11 +100,11 @@ def surfels_from_points(
     given = {name: values[order] for name, values in given.items() if values is not None}
     options = neighbours, splat_size, isolated, viewpoint, crease_angle, flattens_noise, thins_overlaps
     surfels, keep, report = _estimate(given, *options, report, progress)
-    rank = np.argsort(order[keep], kind="stable")
-    arrays = {name: array[keep][rank] for name, array in surfels.items()}
-    positions = given["positions"][keep][rank]
+    keep = keep[np.argsort(order[keep], kind="stable")]
+    arrays = {name: array[keep] for name, array in surfels.items()}
+    positions = given["positions"][keep]
     middle = _middle(positions)
-    report = replace(report, surfels=len(rank), kept=order[keep][rank])
+    report = replace(report, surfels=len(keep), kept=order[keep])
     return Surfels(positions=positions - middle, origin=middle, **arrays), report
 
 

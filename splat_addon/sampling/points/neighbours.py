@@ -192,8 +192,10 @@ def _certain_squares(cells: Cells, queries: np.ndarray) -> np.ndarray:
 
 
 def _compare_with_all(positions: np.ndarray, queries: np.ndarray, found: _Found):
+    columns = np.ascontiguousarray(positions.T)
     for query in queries:
-        squared = ((positions - positions[query]) ** 2).sum(axis=1)
+        away = columns - columns[:, query, None]
+        squared = np.einsum("in,in->n", away, away)
         squared[query] = np.inf
         nearest = np.argpartition(squared, found.count - 1)[: found.count]
         nearest = nearest[np.argsort(squared[nearest], kind="stable")]
