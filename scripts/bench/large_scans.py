@@ -71,7 +71,8 @@ def imported(options, file: Path, out: Path) -> tuple[str, int, int]:
     splat_addon.register()
     bpy.ops.wm.read_factory_settings(use_empty=True)
     bpy.ops.import_scene.surfels_ply(filepath=str(file), most_points=options.few)
-    return "few, imported into Blender", options.few, len(bpy.context.object.data.vertices)
+    count = len(bpy.context.object.data.vertices)
+    return "few, imported into Blender", options.few or count, count
 
 
 def pictured(options, file: Path, out: Path) -> tuple[str, int, int]:

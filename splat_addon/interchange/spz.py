@@ -31,6 +31,8 @@ _HARMONICS = {0: 0, 1: 9, 2: 24, 3: 45}
 _COLOR_SCALE = 0.15
 #: gzip packs at most so many bytes into one.
 _MOST_RATIO = 1032
+#: Bytes that may follow the Gaussians, such as extensions.
+_MORE = 1 << 20
 #: Quaternion, w first, of a quarter of a turn about x, which takes y up to z up.
 _UP = np.float32([0.5**0.5, 0.5**0.5, 0, 0])
 
@@ -56,11 +58,11 @@ def spz_gaussians(packed: bytes, flatness: float = DEFAULT_FLATNESS) -> Gaussian
         raise ValueError(f"The SPZ file has version {version} and degree {degree}; versions 1 to 3 can be read.")
     widths = (6 if version == 1 else 9, 1, 3, 3, 4 if version == 3 else 3)
     whole = _HEADER.size + count * (sum(widths) + _HARMONICS[degree])
-    data = _unpacked(packed, whole) if whole <= _MOST_RATIO * size else b""
+    data = _checked(packed, whole) if whole <= _MOST_RATIO * size else b""
     if len(data) < whole:
         raise ValueError(
-            f"The SPZ file says that it has {count:,} Gaussians, for which its {size:,} bytes are too few; it is cut "
-            "off or damaged."
+            f"The SPZ file says that it has {count:,} Gaussians, but its {size:,} bytes are no whole gzip of these; it "
+            "is cut off or damaged; copy it again."
         )
     columns, start = [], _HEADER.size
     for width in widths:
@@ -87,6 +89,17 @@ def _unpacked(packed: bytes, size: int) -> bytes:
         return zlib.decompressobj(wbits=31).decompress(packed, size)
     except zlib.error:
         return b""
+
+
+def _checked(packed: bytes, size: int) -> bytes:
+    """The first bytes of what gzip packed, none if its checksum is wrong, or far more follow."""
+    unpacker = zlib.decompressobj(wbits=31)
+    try:
+        data = unpacker.decompress(packed, size)
+        unpacker.decompress(unpacker.unconsumed_tail, _MORE)
+    except zlib.error:
+        return b""
+    return data if unpacker.eof else b""
 
 
 def _positions(packed: np.ndarray, version: int, fraction: int) -> np.ndarray:

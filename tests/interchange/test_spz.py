@@ -40,9 +40,10 @@ def test_gaussians_are_where_and_as_they_were(read, version, degree, angle):
 @pytest.mark.parametrize(
     ("data", "sentence"),
     [
-        (spz_file(*gaussians(), 2, count=10**6), "has 1,000,000 Gaussians, for which its .* bytes are too few"),
+        (spz_file(*gaussians(), 2, count=10**6), "has 1,000,000 Gaussians, but its .* bytes are no whole gzip"),
         (spz_file(*gaussians(), 2, count=2**32 - 1), "has 4,294,967,295 Gaussians"),
         (spz_file(*gaussians(), 2)[:200], "cut off or damaged"),
+        (spz_file(*gaussians(), 2)[:-8] + bytes(8), "damaged; copy it again"),  # another checksum
         (gzip.compress(b"NGSP", mtime=0), "ends in its header"),
         (gzip.compress(b"NGSP\x09" + bytes(30), mtime=0), "has version 9"),
         (gzip.compress(b"ply\n", mtime=0), "compressed with gzip; unpack it"),
