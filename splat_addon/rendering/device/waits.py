@@ -10,6 +10,9 @@ from .interface import Device, Target
 #: Whoever cancels waits this long for what the device has still to draw.
 _SECONDS = 0.05
 
+#: No picture takes fewer seconds.
+_LEAST = 1e-6
+
 
 class Waits:
     """Waits often enough that the device is never far behind, and not after each of many pictures that take little
@@ -27,5 +30,6 @@ class Waits:
         self._device.finish(target)
         self._device.restore()
         now = perf_counter()
-        self._every = max(int(_SECONDS * self._drawn / (now - self._waited)), 1)
+        each = (now - self._waited) / self._drawn
+        self._every = max(int(_SECONDS / max(each, _LEAST)), 1)
         self._waited, self._drawn = now, 0
