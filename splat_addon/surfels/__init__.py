@@ -5,7 +5,7 @@ from .layout import HIDDEN, LAYOUT, OPAQUE, OPTIONAL_LAYOUT
 from .sets import concatenate, empty_surfels, portions, prepared
 from .shape import Shape
 from .surfels import Surfels, field_values
-from .validity import are_usable, faults_of, valid_surfels
+from .validity import are_usable, faults_of, usable_rows, valid_surfels
 
 __all__ = (
     "HIDDEN",
@@ -21,5 +21,6 @@ __all__ = (
     "field_values",
     "portions",
     "prepared",
+    "usable_rows",
     "valid_surfels",
 )

@@ -18,9 +18,7 @@ def valid_surfels(origin=(0.0, 0.0, 0.0), is_solid=False, **arrays) -> tuple[Sur
     non-finite normal, a non-positive half-axis or a non-finite number drops its row.
     Raises ValueError where a whole array has the wrong shape.
     """
-    arrays = shaped(arrays)
-    for name in ("rotations", "normals"):
-        arrays[name] = _normalised(arrays[name])
+    arrays = _prepared(arrays)
     good = are_usable(arrays)
     skipped = int(len(good) - np.count_nonzero(good))
     if skipped:
@@ -28,15 +26,27 @@ def valid_surfels(origin=(0.0, 0.0, 0.0), is_solid=False, **arrays) -> tuple[Sur
     return Surfels(origin=origin, is_solid=is_solid and not skipped, **arrays), skipped
 
 
+def usable_rows(**arrays) -> np.ndarray:
+    """(n,) the rows that `valid_surfels` takes of these fields."""
+    return np.flatnonzero(are_usable(_prepared(arrays)))
+
+
 def are_usable(arrays: dict[str, np.ndarray]) -> np.ndarray:
     """(N,) bool: which rows of some fields `Surfels` would take. arrays: in their shapes and types."""
     return np.logical_and.reduce(list(row_checks(arrays).values()))
 
 
+def _prepared(arrays: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Fields in their shapes and types, with unit quaternions and normals where possible."""
+    arrays = shaped(arrays)
+    for name in ("rotations", "normals"):
+        arrays[name] = _normalised(arrays[name])
+    return arrays
+
+
 def faults_of(**fields) -> dict[str, int]:
     """What makes rows of the arguments of `valid_surfels` unusable -> the number of such rows."""
-    arrays = shaped({name: fields[name] for name in (*LAYOUT, *OPTIONAL_LAYOUT) if name in fields})
-    arrays |= {name: _normalised(arrays[name]) for name in ("rotations", "normals")}
+    arrays = _prepared({name: fields[name] for name in (*LAYOUT, *OPTIONAL_LAYOUT) if name in fields})
     bad = {name: int(len(good) - np.count_nonzero(good)) for name, good in row_checks(arrays).items()}
     return {f"{name} that are not {DEMANDS.get(name, 'finite')}": count for name, count in bad.items() if count}
 

@@ -14,7 +14,7 @@ if str(SCRIPTS) not in sys.path:
     sys.path.append(str(SCRIPTS))
 
 import splat_addon  # noqa: E402
-from splat_addon.blender.geometry.attributes import read_surfels  # noqa: E402
+from splat_addon.blender.geometry.stored_surfels import read_surfels  # noqa: E402
 from splat_addon.blender.translations.messages import messages  # noqa: E402
 from splat_addon.surfels import Surfels  # noqa: E402
 

@@ -9,7 +9,8 @@ import bpy
 import numpy as np
 import pytest
 
-from splat_addon.blender.geometry.attributes import has_surfels, read_surfels, write_surfels
+from splat_addon.blender.geometry.attributes import has_surfels, write_surfels
+from splat_addon.blender.geometry.stored_surfels import read_surfels
 from splat_addon.surfels import LAYOUT, OPTIONAL_LAYOUT, empty_surfels
 
 NAMES_AND_TYPES = {

@@ -18,8 +18,8 @@ from ..conversion.points_conversion import PointsBatch
 from ..conversion.points_settings import PointsProperties, keywords, viewpoint
 from ..conversion.series import begin_series, first_shown
 from ..conversion.source_record import SurfelPointsSettings
-from ..geometry.attributes import read_surfels
 from ..geometry.points_extraction import has_points
+from ..geometry.stored_surfels import read_surfels
 from ..ids import OBJECT_SETTINGS
 from ..operators.file_paths import file_sentence
 from ..scan_color_settings import COLOR_ITEMS

@@ -11,8 +11,9 @@ import bpy
 from mathutils import Matrix
 
 from ...streaming.layout import MAGIC, SUFFIX
-from ..geometry.attributes import read_surfels, set_offset
+from ..geometry.attributes import set_offset
 from ..geometry.scene_offset import taken_from
+from ..geometry.stored_surfels import read_surfels
 from ..geometry.surfel_files import keep_coarsest, relative_path
 from .file_import import doubts_of_place
 from .placement import placed

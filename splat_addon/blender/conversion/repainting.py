@@ -14,7 +14,8 @@ import numpy as np
 
 from ...sampling import Repainting, drop_strays, drop_unusable, has_normal_map
 from ...surfels import OPTIONAL_LAYOUT
-from ..geometry.attributes import read_field, remove_attribute, room_for, since_written, stamp_space, write_attribute
+from ..geometry.attributes import remove_attribute, since_written, stamp_space, write_attribute
+from ..geometry.stored_surfels import read_field, room_for
 from ..geometry.surfel_files import file_of
 from ..ids import POINT_ATTRIBUTES
 from ..materials.fingerprints import missing_image, told_of

@@ -21,10 +21,9 @@ import numpy as np
 from ...rendering.background import in_background
 from ...rendering.detail.stand_in import LEFT_OUT, STAND_IN, spread, standing_in, widened
 from ...surfels import Surfels, prepared, valid_surfels
-from ..geometry.attributes import (
+from ..geometry.attributes import SOLID, Points
+from ..geometry.stored_surfels import (
     REST_FIELD,
-    SOLID,
-    Points,
     Stored,
     count_of,
     has_loose_points_only,
@@ -163,7 +162,7 @@ class _Reading:
         return any(room.done() for field, room in self._rooms.items() if field not in self._arrays)
 
     def advance(self, points: Points, until: float, clock: Callable[[], float]) -> _Read | None:
-        """Go on until that time; the result when it is complete. Raises ValueError as `attributes.read_stored`."""
+        """Go on until that time; the result when it is complete. Raises ValueError as `read_stored`."""
         if not self._rooms:
             is_late = clock() > until
             if not self._before and not (is_late and self.meanwhile):

@@ -14,8 +14,9 @@ from ...primaries import recolored
 from ...rendering import Instance
 from ...streaming import Stream
 from ...surfels import Surfels
-from ..geometry.attributes import Stored, offset_of, since_written
+from ..geometry.attributes import offset_of, since_written
 from ..geometry.points_proxy import is_solid, shown_points
+from ..geometry.stored_surfels import Stored
 from ..ids import POINT_ATTRIBUTES
 from ..materials.material_override import overridden
 from . import passed_over

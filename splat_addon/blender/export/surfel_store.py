@@ -11,14 +11,9 @@ import numpy as np
 from ...rendering.detail.hierarchies import replaced
 from ...surfels import Surfels
 from ..conversion.changed_sources import ChangedSources
-from ..geometry.attributes import (
-    Points,
-    Stored,
-    have_same_values,
-    read_beside,
-    read_stored,
-)
+from ..geometry.attributes import Points
 from ..geometry.derived import Derived
+from ..geometry.stored_surfels import Stored, have_same_values, read_beside, read_stored
 from ..materials.surface_textures import TextureStore
 from .scan_colors import Column
 from .streams import Streams
@@ -62,7 +57,7 @@ class SurfelStore:
         self._columns: dict[tuple[int, str], Column | None] = {}
 
     def get(self, points: Points, key: int, name: str, offset: np.ndarray, is_solid: bool = False) -> Stored:
-        """The result of `attributes.read_stored`; read once per mesh and frame. There may be no surfels yet.
+        """The result of `read_stored`; read once per mesh and frame. There may be no surfels yet.
 
         key: session_uid of the mesh or point cloud, or of the mesh that the points were made beside.
         name: identifies it in the next evaluation. offset: of the mesh in the .blend.

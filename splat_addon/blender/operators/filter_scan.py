@@ -8,8 +8,9 @@ import numpy as np
 from mathutils import Matrix, Vector
 
 from ..doors import register_classes_factory
-from ..geometry.attributes import has_surfels, read_field
+from ..geometry.attributes import has_surfels
 from ..geometry.scan_filter import add_filter
+from ..geometry.stored_surfels import read_field
 from ..geometry.surfel_files import file_of
 from ..ids import FILTER_SCAN, POINT_ATTRIBUTES
 from ..spoken import said

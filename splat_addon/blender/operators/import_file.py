@@ -29,8 +29,8 @@ from ..conversion.points_settings import (
 )
 from ..conversion.series import begin_series, first_shown
 from ..conversion.surfel_objects import select_only
-from ..geometry.attributes import read_surfels
 from ..geometry.scene_offset import Surroundings, keep_offset
+from ..geometry.stored_surfels import read_surfels
 from ..geometry.surfel_files import relative_path
 from ..ids import IMPORT_FILE
 from ..spoken import said

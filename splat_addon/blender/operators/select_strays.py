@@ -10,7 +10,8 @@ from bpy.props import FloatProperty
 from ...sampling.points.strayness import strayness
 from ..doors import register_classes_factory
 from ..fingerprints import of_array
-from ..geometry.attributes import has_surfels, read_field
+from ..geometry.attributes import has_surfels
+from ..geometry.stored_surfels import read_field
 from ..ids import POINT_ATTRIBUTES, SELECT_STRAYS
 from ..spoken import said
 

@@ -10,8 +10,8 @@ from ...streaming.layout import SUFFIX
 from ...surfels import portions
 from ..conversion.color_watch import refresh
 from ..doors import register_classes_factory
-from ..geometry.attributes import read_surfels
 from ..geometry.sources import is_surfel_object
+from ..geometry.stored_surfels import read_surfels
 from ..geometry.surfel_files import file_of, keep_coarsest, own_id, relative_path
 from ..geometry.world_surfels import as_in_files
 from ..ids import STORE_SURFELS

@@ -10,7 +10,7 @@ import pytest
 from splat_addon.blender.commands.points import add_points_arguments
 from splat_addon.blender.conversion.points_settings import PointsProperties
 from splat_addon.blender.conversion.source_record import SurfelPointsSettings
-from splat_addon.blender.geometry.attributes import read_surfels
+from splat_addon.blender.geometry.stored_surfels import read_surfels
 
 
 def plane(path, start):

@@ -14,7 +14,7 @@ from splat_addon.blender.export.live_meshes import LiveMeshes
 from splat_addon.blender.export.scene import export_scene
 from splat_addon.blender.export.sliced_store import SlicedStore
 from splat_addon.blender.export.surfel_store import SurfelStore
-from splat_addon.blender.geometry.attributes import have_same_values
+from splat_addon.blender.geometry.stored_surfels import have_same_values
 
 COUNT = 30_000
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from mathutils import Euler, Matrix
 
-from splat_addon.blender.geometry.attributes import read_surfels, write_surfels
+from splat_addon.blender.geometry.attributes import write_surfels
+from splat_addon.blender.geometry.stored_surfels import read_surfels
 from splat_addon.quaternions import axes_quaternions
 from splat_addon.surfels import Surfels
 

@@ -10,8 +10,8 @@ from splat_addon.blender.conversion.color_watch import out_of_date, refresh
 from splat_addon.blender.export.live_meshes import LiveMeshes
 from splat_addon.blender.export.scene import export_scene
 from splat_addon.blender.export.surfel_store import SurfelStore
-from splat_addon.blender.geometry.attributes import read_surfels
 from splat_addon.blender.geometry.points_proxy import shown_points
+from splat_addon.blender.geometry.stored_surfels import read_surfels
 from splat_addon.surfels import field_values
 
 SETTINGS = {"density": "RESOLUTION", "resolution": 16, "clips_edges": False, "use_adaptive": False}

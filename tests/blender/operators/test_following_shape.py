@@ -8,8 +8,8 @@ import pytest
 from splat_addon.blender.export.live_meshes import LiveMeshes
 from splat_addon.blender.export.scene import export_scene
 from splat_addon.blender.export.surfel_store import SurfelStore
-from splat_addon.blender.geometry.attributes import read_surfels
 from splat_addon.blender.geometry.points_proxy import shown_points
+from splat_addon.blender.geometry.stored_surfels import read_surfels
 from splat_addon.rendering.detail.hierarchies import hierarchy_before, hierarchy_of
 
 

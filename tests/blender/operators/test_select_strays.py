@@ -7,7 +7,8 @@ import bpy
 import numpy as np
 import pytest
 
-from splat_addon.blender.geometry.attributes import read_surfels, write_surfels
+from splat_addon.blender.geometry.attributes import write_surfels
+from splat_addon.blender.geometry.stored_surfels import read_surfels
 
 
 @pytest.fixture
