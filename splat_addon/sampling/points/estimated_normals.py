@@ -70,7 +70,7 @@ def estimated_normals(
         shifts = np.zeros(positions.shape)
         shifts[rows] = normals[rows] * np.einsum("nc,nc->n", normals[rows], middles)[:, None]
     is_blind = viewpoint is None and (scanners is None or np.isnan(scanners).any())
-    sides = seen_sides(positions, normals, own, float(np.median(spacing))) if is_blind else None
+    sides = seen_sides(positions, normals, own, spacing) if is_blind else None
     signs, part, faces_outside = consistent_signs(
         positions, normals, nearest, sides, lambda share: told(0.6 + 0.4 * share)
     )

@@ -17,13 +17,15 @@ def ball(count: int) -> np.ndarray:
 def test_a_ball_is_seen_from_outside_whatever_the_signs_of_its_normals():
     points = ball(4000)
     signs = np.random.default_rng(1).choice((-1, 1), 4000)
-    more, both = seen_sides(points, signs[:, None] * points, nearest_neighbours(points, 12)[0], 0.056)
+    more, both = seen_sides(points, signs[:, None] * points, nearest_neighbours(points, 12)[0], np.full(4000, 0.056))
     assert (signs * more / both > 0.95).all()
 
 
 def test_a_sheet_is_seen_from_both_sides():
     points = 64 * np.random.default_rng(0).random((4000, 3)) * (1, 1, 0)
-    more, both = seen_sides(points, np.tile((0.0, 0.0, 1.0), (4000, 1)), nearest_neighbours(points, 12)[0], 1.0)
+    more, both = seen_sides(
+        points, np.tile((0.0, 0.0, 1.0), (4000, 1)), nearest_neighbours(points, 12)[0], np.ones(4000)
+    )
     assert np.abs(more).sum() < 0.05 * both.sum()
 
 
@@ -34,7 +36,7 @@ def test_what_is_seen_from_outside_decides_between_parts_that_disagree():
     turned = np.radians(45) * np.digitize(-points[:, 2], (-0.24, -0.08, 0.08, 0.24))[:, None]
     normals = np.cos(turned) * points + np.sin(turned) * south / np.linalg.norm(south, axis=1, keepdims=True)
     near = nearest_neighbours(points, 12)[0]
-    sides = seen_sides(points, normals, near, 0.056)
+    sides = seen_sides(points, normals, near, np.full(4000, 0.056))
     far = np.abs(points[:, 2]) > 0.3
     facing = []
     for told in (None, sides):
