@@ -22,9 +22,10 @@ from ..object_detail import detail_of
 from .contents import ABOUT_BARE_POINTS, Content, content_of, not_drawn
 from .entries import kind_of, matrices_of
 from .light_linking import LightSets
-from .live_mesh import LiveMesh, Manner, Place
+from .live_mesh import LiveMesh
 from .live_meshes import LiveMeshes
 from .notes import Notes
+from .places import Manner, Places, in_order, parts_at
 from .styles import style_of
 from .surfel_instances import SurfelInstances
 from .surfel_store import SurfelStore
@@ -39,7 +40,7 @@ class EntryKind:
     """What entries show that differ in their places only.
 
     shows: whether it may be visible. surfels: instances of those that are surfels, placed in the space of an entry.
-    mesh: the one that it shows, in some manner. notes: on one entry. count: how many entries there are.
+    mesh: the one that it shows, in some manner. notes: on one entry. rows: of its entries.
     """
 
     name: str
@@ -48,7 +49,7 @@ class EntryKind:
     mesh: LiveMesh | None = None
     manner: Manner | None = None
     notes: Notes = field(default_factory=Notes)
-    count: int = 0
+    rows: list[int] = field(default_factory=list)
 
 
 class EntryKinds:
@@ -81,7 +82,6 @@ class EntryKinds:
         matrices = matrices_of(self._depsgraph)
         are_finite = np.isfinite(matrices).all(axis=(1, 2)).tolist()
         kinds: dict[tuple, EntryKind] = {}
-        surfels: list[tuple[EntryKind, int]] = []
         for row, entry in enumerate(self._depsgraph.object_instances):
             if not entry.show_self:
                 continue
@@ -92,14 +92,16 @@ class EntryKinds:
             if kind.shows and not are_finite[row]:
                 self._leave_out(kind.name, matrices[row])
                 continue
-            kind.count += 1
-            if kind.mesh is not None:
-                kind.mesh.places.append(Place(matrices[row], kind.manner))
-            if kind.surfels:
-                surfels.append((kind, row))
+            kind.rows.append(row)
+        of_meshes: dict[LiveMesh, list[EntryKind]] = {}
         for kind in kinds.values():
-            self._notes.add_those_of(kind.notes, kind.count)
-        self._place(surfels, matrices)
+            self._notes.add_those_of(kind.notes, len(kind.rows))
+            if kind.mesh is not None and kind.rows:
+                of_meshes.setdefault(kind.mesh, []).append(kind)
+        for mesh, own in of_meshes.items():
+            rows, of = in_order([kind.rows for kind in own])
+            mesh.places = Places(tuple(kind.manner for kind in own), of, matrices[rows])
+        self._place([kind for kind in kinds.values() if kind.surfels], matrices)
 
     def _leave_out(self, name: str, matrix: np.ndarray) -> None:
         try:
@@ -107,18 +109,18 @@ class EntryKinds:
         except ValueError as error:
             self._notes.leave_out(name, error)
 
-    def _place(self, surfels: list[tuple[EntryKind, int]], matrices: np.ndarray) -> None:
-        """Make the instances of surfels. surfels: kinds, and rows of their matrices."""
-        parts = [(part, row) for kind, row in surfels for part in kind.surfels]
+    def _place(self, kinds: list[EntryKind], matrices: np.ndarray) -> None:
+        """Make the instances of kinds of surfels."""
+        rows, of = in_order([kind.rows for kind in kinds])
         try:
-            self.surfels = _placed(parts, matrices)
+            self.surfels = _placed([kind.surfels for kind in kinds], of, matrices[rows])
         except ValueError:  # of some of them, which are found
-            for kind, row in surfels:
+            for row, number in zip(rows.tolist(), of.tolist(), strict=True):
                 try:
-                    own = _placed([(part, row) for part in kind.surfels], matrices)
+                    own = _placed([kinds[number].surfels], np.zeros(1, int), matrices[[row]])
                     self.surfels = joined(self.surfels, own)
                 except ValueError as error:
-                    self._notes.leave_out(kind.name, error)
+                    self._notes.leave_out(kinds[number].name, error)
 
     def _kind(self, entry: bpy.types.DepsgraphObjectInstance) -> EntryKind:
         """The kind of an entry, whose meshes are read while the entry is valid."""
@@ -158,7 +160,13 @@ class EntryKinds:
             notes.add(ABOUT_BARE_POINTS)
 
 
-def _placed(parts: list[tuple[Instance, int]], matrices: np.ndarray) -> Placements:
-    """Instances at the places of entries. parts: placed in the space of an entry, and the row of its matrix."""
-    moved = [matrices[row] @ part.matrix_world if part.stream is not None else matrices[row] for part, row in parts]
-    return placed_at([part for part, _ in parts], np.array(moved))
+def _placed(of_kinds: list[list[Instance]], of: np.ndarray, matrices: np.ndarray) -> Placements:
+    """Instances at n places of entries. of_kinds: those of each kind, placed in the space of an entry. of: (n,) the
+    kinds."""
+    rows, numbers = parts_at(of, list(map(len, of_kinds)))
+    parts, moved = [part for own in of_kinds for part in own], matrices[rows]
+    for number, part in enumerate(parts):
+        if part.stream is not None:
+            own = numbers == number
+            moved[own] = moved[own] @ part.matrix_world
+    return placed_at(parts, moved, numbers)

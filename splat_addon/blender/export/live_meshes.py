@@ -85,7 +85,7 @@ class LiveMeshes:
             key = *key, evaluated.original.session_uid
         if key not in self._frame:
             live = self._kept.setdefault(self._lasting_key(evaluated, form.split_group), LiveMesh())
-            live.places, live.owner = [], owner.name
+            live.places, live.owner = None, owner.name
             if live.read is None or live.read.key != key or self._may_differ(live.read, evaluated, asked):
                 self.counts["read"] += 1
                 before = live.read and live.read.topology
@@ -112,7 +112,7 @@ class LiveMeshes:
         sampled, drawn = [], []
         self._views = is_moving(depsgraph.scene.camera), *views_told(depsgraph)
         for live in self._frame.values():
-            if not live.places:
+            if live.places is None:
                 continue
             read = live.read
             for sentence in (*read.content.notes, *read.said):
@@ -128,6 +128,7 @@ class LiveMeshes:
                     drawn.append(self._polygon_instances(live, notes))
             except Exception as error:
                 notes.leave_out(live.owner, error)
+            live.places = None
         self._kept = {name: live for name, live in self._kept.items() if name in self._names}
         return joined(*sampled), joined(*drawn)
 

@@ -9,6 +9,7 @@ from functools import partial
 import bpy
 import numpy as np
 
+from ...rendering.contents import digest
 from ...sampling import DeformingSurfels, NotSeenError, TriangleMesh, grid_spacing, projected_area
 from ..conversion.automatic_density import automatic_spacing
 from ..conversion.camera_density import most_demanding, seen_spacing
@@ -39,7 +40,7 @@ def spacing_for(live: LiveMesh, density: Density, depsgraph: bpy.types.Depsgraph
     enough, or if nothing changed. views: the cameras of the depsgraph, as a value."""
     if density != live.density:
         live.deforming = None
-    asked = live.detail, live.matrices.tobytes(), views
+    asked = live.detail, digest(live.matrices), views
     if live.deforming is not None and live.settled[0] is live.read.whole and live.settled[1] == asked:
         return live.spacing
     spacing = _SPACINGS[density.measure](live, density.value, depsgraph)

@@ -103,7 +103,7 @@ def placed_at(placed: Sequence[Placed], matrices: np.ndarray, of: np.ndarray | N
     Raises ValueError with a sentence for numbers that no instance may have.
     """
     matrices = np.asarray(matrices, np.float64).reshape(-1, 4, 4)
-    are_usable = (np.abs(matrices) <= MAX_LENGTH).all(axis=(1, 2))
+    are_usable = ((matrices <= MAX_LENGTH) & (matrices >= -MAX_LENGTH)).all(axis=(1, 2))
     for row in np.flatnonzero(~are_usable)[:1]:
         replace(placed[row if of is None else of[row]], matrix_world=matrices[row])  # raises what is wrong
     prototypes, of = _different(placed) if of is None else (placed, np.asarray(of, np.int32))
