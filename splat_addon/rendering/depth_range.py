@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..surfels import Surfels
-from .scene.boxes import corner_by_corner, joined
+from .scene.boxes import CORNERS, corner_by_corner, joined
 from .scene.camera import Camera
 from .scene.far_reaching import box_corners, seen_places
 from .scene.from_eye import FromEye
@@ -166,8 +166,11 @@ def _hulls(seen: Seen) -> np.ndarray:
     """(n, 3) places in view space whose convex hull holds everything."""
     table, corners = seen.table, seen.from_eye.corners
     rows = np.flatnonzero(table.of_kinds(lambda placed: isinstance(placed.shape, Surfels)))
-    hulls = [table.shapes[shape].local_hull for shape in table.shape_of[rows[:_MOST_PLACES]].tolist()]
-    if sum(map(len, hulls)) > _MOST_PLACES or len(hulls) < len(rows):
+    if len(rows) > _MOST_PLACES // len(CORNERS):
+        return corners.reshape(-1, 3)
+    shapes = table.shapes
+    hulls = [shapes[shape].local_hull for shape in table.shape_of[rows].tolist()]
+    if sum(map(len, hulls)) > _MOST_PLACES:
         return corners.reshape(-1, 3)
     matrices = seen.from_eye.model_views[rows]
     places = [hull @ matrix[:3, :3].T + matrix[:3, 3] for hull, matrix in zip(hulls, matrices, strict=True)]

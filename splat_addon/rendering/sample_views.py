@@ -30,8 +30,9 @@ class SampleViews:
     def __init__(
         self, table: InstanceTable, camera: Camera, whole: ClipRange | None, epsilon: float, epsilon_length: float
     ):
-        self._clip = whole or clip_around(table, camera, epsilon, epsilon_length)
-        made = build_view(table, around(camera), epsilon, self._clip, epsilon_length=epsilon_length)
+        seen = seen_by(table, around(camera))
+        self._clip = whole or clipped(camera, seen, epsilon, epsilon_length)
+        made = build_view(table, around(camera), epsilon, self._clip, epsilon_length=epsilon_length, seen=seen)
         left, bottom, right, top = made.bounds or (0.0,) * 4
         # in the pixels of any sample, and of all of them
         bounds = made.bounds and (left - 2, bottom - 2, right, top)

@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from ..surfels import Surfels
-from .depth_range import ClipRange, clipped, picture_bounds, seen_by
+from .depth_range import ClipRange, Seen, clipped, picture_bounds, seen_by
 from .scene import Placed
 from .scene.camera import Camera
 from .scene.from_eye import FromEye
@@ -150,15 +150,17 @@ def build_view(
     whole: ClipRange | None = None,
     are_split: bool = True,
     epsilon_length: float = 0.0,
+    seen: Seen | None = None,
 ) -> View:
     """Instances as seen by this camera. epsilon: how far visibility moves splats back, in radii, and
     epsilon_length on top of that, world units.
 
     whole: clip range of the camera that this one is cropped from, if any, so that depths are rounded alike in all parts
         of a picture.
-    are_split: whether split objects are polygons near this camera and surfels beyond; they cast shadows as both.
+    are_split: whether split objects are polygons near this camera and surfels beyond; they cast shadows as both. seen:
+        what `seen_by` finds, if it is known.
     """
-    seen = seen_by(table, camera)
+    seen = seen or seen_by(table, camera)
     near, far, scale = whole or clipped(camera, seen, epsilon, epsilon_length)
     own, from_eye = seen.table, seen.from_eye
     begin = _split_distances(own, from_eye, camera) if are_split else np.zeros(len(own))

@@ -20,12 +20,14 @@ def lights_of(depsgraph: bpy.types.Depsgraph, notes: Notes) -> tuple[list[Light]
     wrapper for each instance."""
     lights, objects, probes = [], [], []
     for entry in depsgraph.object_instances:
+        if (kind := entry.object.type) not in ("LIGHT", "LIGHT_PROBE"):
+            continue
         if is_sphere_probe(entry):
             try:
                 probes.append(light_probe_of(entry))
             except Exception as error:
                 notes.leave_out(entry.object.name, error)
-        if entry.object.type == "LIGHT" and entry.show_self:
+        if kind == "LIGHT" and entry.show_self:
             try:
                 light = light_of(entry.object.data, finite_matrix(entry.matrix_world), notes)
             except Exception as error:

@@ -25,9 +25,7 @@ def show_backs(table: InstanceTable, camera: Camera) -> np.ndarray:
     are_hidden = table.of_kinds(lambda i: i.is_closed) & (-from_eye.corners[..., 2] >= camera.near).all(axis=1)
     rows = np.flatnonzero(~are_hidden & ~table.are_flattened)
     # an affine map keeps the sides of a plane, so they are told in the object's own space
-    matrices = from_eye.model_views[rows]
-    to_eye = np.tile((0.0, 0.0, 1.0), (len(rows), 1)) if camera.is_orthographic else -matrices[:, :3, 3]
-    eyes = np.linalg.solve(matrices[:, :3, :3], to_eye[..., None])[..., 0]
+    eyes = from_eye.eyes[rows]
     some = max(min(_SOME, _MOST // max(len(rows), 1)), 1)
     shapes, shape_of = table.shapes, table.shape_of[rows]
     instances = np.bincount(shape_of, minlength=len(shapes))

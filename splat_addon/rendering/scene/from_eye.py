@@ -17,10 +17,17 @@ if TYPE_CHECKING:
 
 class FromEye:
     """n instances of a table from a camera's place, which is subtracted from their origins first, so that both may be
-    far from the world's. corners: if they are others than those of the table's boxes."""
+    far from the world's. corners: if they are others than those of the table's boxes. of: what these are some rows
+    of."""
 
-    def __init__(self, table: InstanceTable, camera: Camera, corners: np.ndarray | None = None):
-        self._table, self._camera = table, camera
+    def __init__(
+        self,
+        table: InstanceTable,
+        camera: Camera,
+        corners: np.ndarray | None = None,
+        of: tuple[FromEye, np.ndarray] | None = None,
+    ):
+        self._table, self._camera, self._of = table, camera, of
         if corners is not None:
             self.corners = corners
 
@@ -30,6 +37,9 @@ class FromEye:
     @cached_property
     def _columns(self) -> np.ndarray:
         """(4, 3, n) images of the axes and of the shape's origin, in view space."""
+        if self._of is not None:
+            whole, rows = self._of
+            return np.take(whole._columns, rows, axis=2)
         table = self._table
         columns = table.columns
         columns[3] -= self._camera.matrix_world[:3, 3, None]
@@ -59,18 +69,31 @@ class FromEye:
         return np.where(self._table.are_flattened, 0.0, np.sign((_cross(x, y) * z).sum(axis=0)))
 
     @cached_property
+    def eyes(self) -> np.ndarray:
+        """(n, 3) the camera's place in the space of each, relative to the shape's origin, or of a parallel camera, what
+        its back is there; without meaning for a flattened instance."""
+        x, y, z, origins = self._columns
+        toward = np.array([[0.0], [0.0], [1.0]]) if self._camera.is_orthographic else -origins
+        across = _cross(y, z), _cross(z, x), _cross(x, y)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return (
+                np.stack([(each * toward).sum(axis=0) for each in across], axis=1)
+                / (across[2] * z).sum(axis=0)[:, None]
+            )
+
+    @cached_property
     def corners(self) -> np.ndarray:
         """(n, 8, 3) corners of boxes around them, in view space."""
+        if self._of is not None:
+            whole, rows = self._of
+            return corner_by_corner(whole.corners, rows)
         table, shapes, axes = self._table, self._table.prototypes, self._columns[:3]
         low = self._columns[3] + table.along(axes, shapes.low).sum(axis=0)
         return box_of(low, table.along(axes, shapes.high - shapes.low))
 
     def taken(self, rows: np.ndarray, table: InstanceTable) -> FromEye:
         """What is seen of some of them. rows: (m,) numbers or (n,) bool. table: these instances."""
-        made = FromEye(table, self._camera)
-        if "corners" in self.__dict__:
-            made.corners = corner_by_corner(self.corners, rows)
-        return made
+        return FromEye(table, self._camera, of=(self, np.flatnonzero(rows) if rows.dtype == bool else rows))
 
 
 def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:

@@ -309,4 +309,8 @@ def with_others(table: InstanceTable, rows: np.ndarray, made: list[Placed], is_k
     own = np.concatenate([kept.rows, more.rows + np.int32(len(table.every))])
     of = np.concatenate([kept.of, more.of + np.int32(len(table.prototypes.kinds))])
     prototypes = table.prototypes.with_more(more.prototypes)
-    return InstanceTable(every, own[order], numbers[order], of[order], prototypes, table._slots)
+    made_of = InstanceTable(every, own[order], numbers[order], of[order], prototypes, table._slots)
+    if all(name in kept.__dict__ for name in _FOUND):
+        found = {name: np.concatenate([getattr(kept, name), getattr(more, name)])[order] for name in _FOUND}
+        made_of.__dict__.update(found)
+    return made_of
