@@ -2,8 +2,9 @@
 """What a forest of many trees costs beside one of few such trees that fill the same pixels.
 
 The trees of both share one set of surfels, and stand before the camera in rows, under a sun with shadows. *ms* is the
-processor time of a frame; *times* is that over the few trees, in the same turn. *Bytes* are those that an instance
-takes beside the set, in numpy arrays and on the device. *FLIP* compares a part of the picture with all surfels drawn.
+processor time of a frame; *times* is that over the few trees, in the same turn. *Bytes held* are those
+that the scene keeps of an instance, and *of a view* what a view adds of each that it sees, until it is drawn; in memory,
+beside the set. *FLIP* compares a part of the picture with all surfels drawn.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from splat_addon.quaternions import axes_quaternions
 from splat_addon.reference.metrics import mean_flip
 from splat_addon.rendering import Camera, Light, Renderer, Scene, Settings, look_at, open_device
 from splat_addon.rendering.scene import Instance, placed_at
+from splat_addon.rendering.view import build_view
 from splat_addon.surfels import Surfels
 
 DEVICES = ("standalone",)
@@ -32,6 +34,7 @@ LEAF, SPACING = 10, 0.01
 #: Their blend depth. Conversion gives one to flat surfaces; without, a pixel shows the mean normal of leaves behind one
 #: another, which is brighter than the leaves are.
 BLENDING = 0.1
+BYTES = "bytes held, an instance", "of a view"
 #: Samples of the part that is compared, those of a final render.
 SAMPLES = 16
 
@@ -47,13 +50,10 @@ def run(options, report) -> None:
     device, width = open_device(options.device), options.size[0]
     report.header(device, f"{width} x {options.size[1]} pixels, trees of {options.surfels:,} surfels")
     shape = tree(options.surfels)
-    renderers, jobs, own = {}, {}, {}
+    measured(shape, 1, options.size)  # what is found of the shape, once
+    renderers, jobs, held, of_view = {}, {}, {}, {}
     for count in options.trees:
-        tracemalloc.start()
-        scene, camera = forest(shape, count, options.size)
-        scene.table.from_eye(camera)
-        own[count] = tracemalloc.get_traced_memory()[0] / count
-        tracemalloc.stop()
+        scene, camera, held[count], of_view[count] = measured(shape, count, options.size)
         renderers[count] = Renderer(device), scene, camera
         jobs[count] = partial(renderers[count][0].render, scene, camera, Settings())
     drawn = in_turn(jobs, options.turns, processor, warm=2)
@@ -62,9 +62,22 @@ def run(options, report) -> None:
         stats, flip = drawn.results[count].stats, part_flip(renderer, scene, camera, options.part)
         times = drawn.ratio(count, options.trees[0])
         cost = f"{1e3 * drawn.spread(count).median:.0f}", f"{times.median:.2f}"
-        megabytes = f"{stats['texture_bytes'] / 2**20:.0f}"
-        rows.append((f"{count:,}", f"{stats['splats_drawn']:,}", *cost, megabytes, f"{own[count]:.0f}", f"{flip:.4f}"))
-    report.table(["trees", "splats", "ms", "times", "MiB on the device", "bytes an instance", "FLIP"], rows)
+        size = f"{stats['texture_bytes'] / 2**20:.0f}", f"{held[count]:.0f}", f"{of_view[count]:.0f}"
+        rows.append((f"{count:,}", f"{stats['splats_drawn']:,}", *cost, *size, f"{flip:.4f}"))
+    report.table(["trees", "splats", "ms", "times", "MiB on the device", *BYTES, "FLIP"], rows)
+
+
+def measured(shape: Surfels, count: int, size: tuple[int, int]) -> tuple[Scene, Camera, float, float]:
+    """The forest, and its bytes for each instance: those that it holds, and those of a view for each in it."""
+    tracemalloc.start()
+    scene, camera = forest(shape, count, size)
+    view = build_view(scene.table.seen, camera, Settings().epsilon)
+    matrices, seen = view.placed.from_eye.model_views, len(view.placed)
+    with_view = tracemalloc.get_traced_memory()[0]
+    del view, matrices
+    held = tracemalloc.get_traced_memory()[0]
+    tracemalloc.stop()
+    return scene, camera, held / count, (with_view - held) / seen
 
 
 def part_flip(renderer: Renderer, scene: Scene, camera: Camera, edge: int) -> float:
@@ -77,7 +90,7 @@ def part_flip(renderer: Renderer, scene: Scene, camera: Camera, edge: int) -> fl
 
 
 def forest(shape: Surfels, count: int, size: tuple[int, int]) -> tuple[Scene, Camera]:
-    """Trees in rows that fill the picture, turned at random, and the camera."""
+    """Trees in rows that fill the picture, turned at random, and the camera. Matrices are float32 as Blender's are."""
     across = math.ceil(math.sqrt(count * size[0] / size[1]))
     random, matrices = np.random.default_rng(0), np.tile(np.eye(4), (count, 1, 1))
     angles = random.uniform(0, 2 * math.pi, count)
@@ -86,7 +99,7 @@ def forest(shape: Surfels, count: int, size: tuple[int, int]) -> tuple[Scene, Ca
     rows = math.ceil(count / across)
     matrices[:, 0, 3] = APART * (np.arange(count) % across - (across - 1) / 2)
     matrices[:, 2, 3] = APART * (np.arange(count) // across - (rows - 1) / 2)
-    placed = placed_at([Instance(shape)] * count, matrices)
+    placed = placed_at([Instance(shape)], matrices.astype(np.float32), np.zeros(count, int))
     fov = 0.6
     distance = 0.5 * APART * rows / math.tan(fov / 2)
     camera = Camera.perspective(look_at((0, -distance, 0), (0, 0, 0)), fov, size)
