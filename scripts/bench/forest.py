@@ -2,9 +2,9 @@
 """What a forest of many trees costs beside one of few such trees that fill the same pixels.
 
 The trees of both share one set of surfels, and stand before the camera in rows, under a sun with shadows. *ms* is the
-processor time of a frame; *times* is that over the few trees, in the same turn. *Bytes held* are those
-that the scene keeps of an instance, and *of a view* what a view adds of each that it sees, until it is drawn; in memory,
-beside the set. *FLIP* compares a part of the picture with all surfels drawn.
+processor time of a frame; *times* is that over the few trees, in the same turn. *Bytes held* are those that the scene
+keeps of an instance, and *of a view* those that a view adds of each in it until it is drawn; in memory, beside the set.
+*FLIP* compares a part of the picture with all surfels drawn.
 """
 
 from __future__ import annotations

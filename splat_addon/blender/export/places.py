@@ -36,7 +36,7 @@ class Places:
         return len(self.of)
 
     def where(self, which: Callable[[Form], bool]) -> Places:
-        """Those in some forms."""
+        """The places in some forms."""
         chosen = np.array([which(manner.form) for manner in self.manners], bool)
         if chosen.all():
             return self
@@ -45,6 +45,7 @@ class Places:
         return Places(manners, numbers[self.of[rows]], self.matrices[rows])
 
     def with_manners(self, change: Callable[[Manner], Manner]) -> Places:
+        """The same places in other manners."""
         return replace(self, manners=tuple(map(change, self.manners)))
 
 
