@@ -5,7 +5,9 @@ import bpy
 import numpy as np
 import pytest
 
+from splat_addon.blender.geometry.points_extraction import materials_of
 from splat_addon.blender.geometry.reading import readable_mesh
+from splat_addon.blender.geometry.sources import mesh_key
 from splat_addon.blender.meshes.mesh_extraction import read_mesh, read_without_pixels
 
 
@@ -90,6 +92,16 @@ def test_a_slot_that_the_object_owns_wins_over_the_meshs(add_square):
     square.material_slots[0].link = "OBJECT"
     square.material_slots[0].material = bpy.data.materials.new("of the object")
     assert [m.name for m in extract(square).materials] == ["of the object"]
+
+
+def test_a_slot_that_the_object_owns_and_that_is_empty_has_no_material(add_square):
+    square = add_square()
+    square.data.materials.append(bpy.data.materials.new("of the mesh"))
+    square.material_slots[0].link = "OBJECT"
+    square.material_slots[0].material = None
+    evaluated = square.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    assert extract(square).materials == materials_of(evaluated) == (None,)
+    assert mesh_key(evaluated)[1:] == (0,)
 
 
 def test_materials_are_those_in_the_file_and_not_evaluated_copies(add_square):

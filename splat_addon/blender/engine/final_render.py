@@ -215,4 +215,3 @@ def _progress(engine, turn: tuple[int, int], done: float, step: str) -> bool:
     engine.update_progress((turn[0] + done) / turn[1])
     _tell_step(engine, step.title())
     return not engine.test_break()
-

@@ -16,6 +16,7 @@ from ...streaming import Stream
 from ...surfels import Surfels
 from ..geometry.attributes import offset_of, since_written
 from ..geometry.points_proxy import is_solid, shown_points
+from ..geometry.reading import own_materials
 from ..geometry.stored_surfels import Stored
 from ..ids import POINT_ATTRIBUTES
 from ..materials.material_override import overridden
@@ -113,7 +114,7 @@ class SurfelInstances:
         """The instance of an object, in two if it has holes; none while its surfels are read."""
         surfels, owner, textures = read.stored.surfels, object_.original, self._store.textures
         # a point cloud made by modifiers has no slots of its own
-        slots = [slot.material for slot in owner.evaluated_get(self._depsgraph).material_slots]
+        slots = own_materials(owner.evaluated_get(self._depsgraph))
         if surfels is None:
             if POINT_ATTRIBUTES["uvs"].name in owner.data.attributes:
                 for material in slots:  # now, because images of some colour spaces cannot be read while a view is drawn

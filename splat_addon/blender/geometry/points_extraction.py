@@ -12,7 +12,7 @@ import bpy
 import numpy as np
 
 from .attributes import has_surfels
-from .reading import read_values, readable_mesh
+from .reading import own_materials, read_values, readable_mesh
 
 #: Blender's attribute type -> what `foreach_get` takes, and values per point. "color" is scene-linear for both.
 _READS = {
@@ -62,7 +62,7 @@ def extract_points(source: bpy.types.Object, depsgraph: bpy.types.Depsgraph) -> 
 
 def materials_of(evaluated: bpy.types.Object) -> tuple[bpy.types.Material | None, ...]:
     """The materials of the file in an evaluated object's slots, None for an empty one."""
-    return tuple(slot.material and slot.material.original for slot in evaluated.material_slots)
+    return tuple(material and material.original for material in own_materials(evaluated))
 
 
 def sheared(points: ExtractedPoints, linear: np.ndarray) -> ExtractedPoints:

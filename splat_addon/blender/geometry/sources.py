@@ -18,7 +18,7 @@ import numpy as np
 from ...interchange.placement import flattens
 from .attributes import has_surfels
 from .points_proxy import is_points_modifier, shows_as_points
-from .reading import readable_mesh
+from .reading import own_materials, readable_mesh
 
 #: Types whose evaluated geometry is, or may be, a mesh; the latter only with modifiers that could make one.
 _SURFACES = frozenset({"MESH", "CURVE", "SURFACE", "FONT", "META"})
@@ -154,7 +154,7 @@ def asked_of(entry: bpy.types.DepsgraphObjectInstance) -> tuple[bpy.types.Object
 def mesh_key(evaluated: bpy.types.Object) -> tuple:
     """A key that is equal for entries with the same evaluated mesh and materials, within one evaluation."""
     # an evaluated material has no session_uid of its own
-    slots = (slot.material.original.session_uid if slot.material else 0 for slot in evaluated.material_slots)
+    slots = (material.original.session_uid if material else 0 for material in own_materials(evaluated))
     return evaluated.data.session_uid, *slots
 
 
