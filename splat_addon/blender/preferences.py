@@ -14,7 +14,8 @@ import bpy
 from bpy.props import IntProperty, PointerProperty
 
 from ..rendering import open_device
-from .conversion.mesh_settings import PROPERTY_NAMES, SurfelConversionSettings, draw_properties
+from .conversion.mesh_settings import PROPERTY_NAMES, SurfelConversionSettings
+from .conversion.mesh_settings_layout import draw_properties
 from .doors import register_classes_factory, unattended, with_handlers
 from .ids import CONVERSION_SETTINGS
 

@@ -6,7 +6,8 @@ import pytest
 from mathutils import Matrix
 
 from splat_addon.blender.conversion import automatic_density, prediction
-from splat_addon.blender.conversion.mesh_conversion import Choices, prepare, sample
+from splat_addon.blender.conversion.choices import Choices
+from splat_addon.blender.conversion.mesh_conversion import prepare, sample
 from splat_addon.blender.conversion.mesh_settings import choices
 from splat_addon.blender.density import Density
 from splat_addon.blender.ids import CONVERSION_SETTINGS

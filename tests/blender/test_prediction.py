@@ -5,8 +5,8 @@ import bpy
 import pytest
 
 from splat_addon.blender.conversion import prediction
+from splat_addon.blender.conversion.choices import Choices
 from splat_addon.blender.conversion.gathering import gather
-from splat_addon.blender.conversion.mesh_conversion import Choices
 from splat_addon.blender.conversion.mesh_settings import choices
 from splat_addon.blender.density import Density
 from splat_addon.blender.ids import CONVERSION_SETTINGS

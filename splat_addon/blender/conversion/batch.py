@@ -19,9 +19,10 @@ from ...faults import sentence_of
 from ...sampling import Sampling, SamplingCancelled, sample_surface
 from ..spoken import said
 from .as_rendered import as_rendered
+from .choices import Choices
 from .following import at_origin_of_source, with_short_origin
 from .gathering import groups
-from .mesh_conversion import Choices, Conversion, bake, place, prepare, sample
+from .mesh_conversion import Conversion, bake, place, prepare, sample
 from .painted_as import forget, remember
 from .source_record import record_of
 from .surfel_objects import active_collection, refill, select_only

@@ -19,7 +19,6 @@ from ...sampling import (
     REDUCTIONS,
     FlatExtents,
     Sampling,
-    SamplingOptions,
     Tolerance,
     TriangleMesh,
     drop_strays,
@@ -34,7 +33,7 @@ from ...sampling import (
     sample_surface,
 )
 from ...surfels import Surfels
-from ..density import Density, Measure
+from ..density import Measure
 from ..materials.baking import Bakeable, baked, baked_otherwise
 from ..materials.material_surfaces import Unread
 from ..meshes.mesh_extraction import read_mesh, unread_sentences
@@ -42,59 +41,19 @@ from ..object_detail import detail_of
 from .automatic_density import automatic_spacing
 from .camera_density import without_camera
 from .changing_shape import is_deformed
+from .choices import Choices
 from .gathering import gather
 from .surfel_objects import add_surfel_object, collections_of, render_like
 
 #: How far the surface may be above or below its surfel, in spacings: because of curvature within the cell, or a move to
 #: a lattice.
 _REACH, _LATTICE_REACH = 0.25, 1.0
-
 #: About 20 GB during conversion; a typo in the resolution must not freeze the machine.
 MAX_SURFELS = 100_000_000
-
 #: Surfels, and surfels a triangle, from which texture mapping is recommended for an image on flat faces.
 _MANY, _MANY_OF_A_TRIANGLE = 500_000, 1000
-
-
 #: The share of the surfels from which a report says how many flat places saved.
 _LEAST_SAVED = 0.01
-
-
-@dataclass(frozen=True)
-class Choices:
-    """The user's settings for a conversion. `mesh_settings.choices` fills all; those left out are of plain surfels.
-
-    reduction, grazing_angle: as in sampling.
-    splat_size: half-axis of a splat, in spacings.
-    tolerance: how far from flat, in object units, the surface may be where surfels become larger; 0: only inside flat
-        faces; None: all have the same size.
-    texture_mapped: whether colours that are a single image are looked up at render time.
-    normal_fields: whether shading normals change over surfels.
-    crease_angle: radians, beyond which splats end at edges, get their own blend depth and fit the surface, or None.
-    space: "object" or "world": the space whose units lengths are in and in which surfels are evenly spaced.
-    join: whether all sources become one, in world units.
-    bake: whether inputs of materials that cannot be read come from Blender's own bake.
-    """
-
-    density: Density
-    splat_size: float = SamplingOptions.splat_size
-    reduction: str = SamplingOptions.reduction
-    grazing_angle: float = SamplingOptions.grazing_angle
-    tolerance: float | None = None
-    texture_mapped: bool = SamplingOptions.texture_mapped
-    normal_fields: bool = SamplingOptions.normal_fields
-    crease_angle: float | None = None
-    space: str = "object"
-    join: bool = False
-    bake: bool = False
-
-    @property
-    def asks_camera(self) -> bool:
-        return self.density.asks_camera
-
-    @property
-    def in_world_units(self) -> bool:
-        return self.join or self.space == "world"
 
 
 @dataclass(eq=False)

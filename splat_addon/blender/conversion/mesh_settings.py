@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty
@@ -15,8 +14,6 @@ from ...sampling import (
     LEAST_GRAZING_ANGLE,
     REDUCTIONS,
     SamplingOptions,
-    error_at,
-    pixels_for,
 )
 from ..density import Density, Measure
 from ..density_properties import (
@@ -30,7 +27,8 @@ from ..density_properties import (
 )
 from ..ids import CONVERSION_SETTINGS, TEXTS
 from ..registration import with_property
-from .mesh_conversion import Choices
+from .choices import Choices
+from .quality import QUALITIES, choose_error, choose_quality, error_of, quality_of
 
 
 def follow_property():
@@ -216,96 +214,6 @@ def chosen_density(properties: ConversionProperties) -> str:
     return chosen
 
 
-def draw_properties(layout: bpy.types.UILayout, properties: ConversionProperties) -> None:
-    """All settings in Blender's own style, for the redo panel and the preferences."""
-    layout.use_property_split = True
-    layout.use_property_decorate = False
-    draw_density(layout, properties)
-    draw_looks(layout, properties)
-    layout.prop(properties, "follow")
-    draw_edges(layout, properties)
-    draw_advanced(layout, properties)
-    draw_once(layout, properties)
-
-
-def draw_looks(layout: bpy.types.UILayout, properties: ConversionProperties) -> None:
-    """Draw how the look of materials comes to the surfels."""
-    layout.prop(properties, "bake_materials")
-    layout.prop(properties, "texture_mapped")
-
-
-def draw_edges(layout: bpy.types.UILayout, properties: ConversionProperties) -> None:
-    layout.prop(properties, "clips_edges")
-    if properties.clips_edges:
-        layout.prop(properties, "crease_angle")
-
-
-def draw_density(layout: bpy.types.UILayout, properties: ConversionProperties) -> None:
-    layout.prop(properties, "density")
-    layout.prop(properties, DENSITIES[properties.density].property)
-
-
-def draw_advanced(layout: bpy.types.UILayout, properties: ConversionProperties) -> None:
-    """Draw what few conversions need."""
-    layout.prop(properties, "use_adaptive")
-    if properties.use_adaptive:
-        layout.prop(properties, "tolerance")
-    layout.prop(properties, "normal_fields")
-    layout.prop(properties, "splat_size")
-    layout.prop(properties, "reduction")
-    if REDUCTIONS[properties.reduction.lower()].has_angle:
-        layout.prop(properties, "grazing_angle")
-
-
-def draw_once(layout: bpy.types.UILayout, properties: ConversionProperties) -> None:
-    """Draw what a conversion settles for good: an update cannot change it."""
-    layout.prop(properties, "join")
-    if not properties.join:
-        layout.row().prop(properties, "space", expand=True)
-    layout.row().prop(properties, "source", expand=True)
-
-
-class _Quality(NamedTuple):
-    """A choice of density in the sidebar. pixels: per surfel, with automatic density."""
-
-    label: str
-    description: str
-    pixels: float
-
-
-QUALITIES = {
-    "DRAFT": _Quality("Draft", "A quarter of the surfels that the scene's camera needs, for a first look", 1.5),
-    "CAMERA": _Quality("Camera", "As many surfels as the scene's camera needs", 0.75),
-    "FINE": _Quality("Fine", "Four times as many, for fine textures and for coming closer later", 0.375),
-}
-
-
-def _quality(settings: SurfelConversionSettings) -> int:
-    """The number of the quality that the density amounts to, or of the last item if it is another one."""
-    pixels = settings.pixels if settings.density == "AUTOMATIC" else None
-    return next((k for k, one in enumerate(QUALITIES.values()) if one.pixels == pixels), len(QUALITIES))
-
-
-def _choose_quality(settings: SurfelConversionSettings, number: int) -> None:
-    if number < len(QUALITIES):
-        settings.density, settings.pixels = "AUTOMATIC", list(QUALITIES.values())[number].pixels
-
-
-def expected_error(settings: SurfelConversionSettings) -> tuple[float, float] | None:
-    """Typical and worst error of surfels at the chosen density; None where it does not follow the camera, or was never
-    measured."""
-    return error_at(settings.pixels) if settings.density in ("AUTOMATIC", "CAMERA") else None
-
-
-def _error(settings: SurfelConversionSettings) -> float:
-    return (expected_error(settings) or (LARGEST_ERROR,))[0]
-
-
-def _choose_error(settings: SurfelConversionSettings, error: float) -> None:
-    settings.density = "AUTOMATIC"
-    settings.pixels = pixels_for(min(max(error, LEAST_ERROR), LARGEST_ERROR))
-
-
 class SurfelConversionSettings(ConversionProperties, bpy.types.PropertyGroup):
     """The settings of the sidebar for the next conversion, and those that a surfel object was converted with."""
 
@@ -316,8 +224,8 @@ class SurfelConversionSettings(ConversionProperties, bpy.types.PropertyGroup):
             *((name, one.label, one.description, k) for k, (name, one) in enumerate(QUALITIES.items())),
             ("OTHER", "Other", "The density chosen under Advanced", len(QUALITIES)),
         ],
-        get=_quality,
-        set=_choose_quality,
+        get=quality_of,
+        set=choose_quality,
     )
     error: FloatProperty(
         name="Error",
@@ -328,8 +236,8 @@ class SurfelConversionSettings(ConversionProperties, bpy.types.PropertyGroup):
         min=LEAST_ERROR,
         max=LARGEST_ERROR,
         precision=3,
-        get=_error,
-        set=_choose_error,
+        get=error_of,
+        set=choose_error,
     )
 
 

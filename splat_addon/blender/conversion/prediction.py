@@ -29,8 +29,9 @@ from ..density import Density, Measure
 from ..doors import unattended, with_handlers
 from ..geometry.sources import has_surfaces
 from ..meshes.mesh_extraction import read_without_pixels
+from .choices import Choices
 from .gathering import frame_of, gather
-from .mesh_conversion import Choices, flat_places
+from .mesh_conversion import flat_places
 from .placement import relative
 
 #: Delay that combines the changes of a stroke or a drag into one measurement. A sidebar that opens fades in meanwhile.

@@ -6,7 +6,8 @@ from __future__ import annotations
 import bpy
 
 from ..conversion.batch import ConversionBatch
-from ..conversion.mesh_settings import ConversionProperties, choices, draw_properties
+from ..conversion.mesh_settings import ConversionProperties, choices
+from ..conversion.mesh_settings_layout import draw_properties
 from ..geometry.sources import has_surfaces
 from ..ids import SURFELS_FROM_MESH
 from ..spoken import said

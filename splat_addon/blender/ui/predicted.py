@@ -9,9 +9,9 @@ from ...faults import sentence_of
 from ...sampling import UNKNOWN_FLAT_EXTENTS
 from ..conversion.automatic_density import automatic_spacing
 from ..conversion.camera_density import without_camera
+from ..conversion.choices import Choices
 from ..conversion.density_reason import Reason, sentences
 from ..conversion.gathering import frame_of, groups
-from ..conversion.mesh_conversion import Choices
 from ..conversion.prediction import Extent, known_extents
 from ..density import Density, Measure
 from ..object_detail import detail_of

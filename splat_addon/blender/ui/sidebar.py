@@ -7,23 +7,15 @@ from __future__ import annotations
 import bpy
 
 from ..conversion.color_watch import why_out_of_date
-from ..conversion.mesh_settings import (
-    PROPERTY_NAMES,
-    QUALITIES,
-    choices,
-    draw_advanced,
-    draw_density,
-    draw_edges,
-    draw_looks,
-    draw_once,
-    expected_error,
-)
+from ..conversion.mesh_settings import PROPERTY_NAMES, choices
+from ..conversion.mesh_settings_layout import draw_advanced, draw_density, draw_edges, draw_looks, draw_once
 from ..conversion.points_settings import (
     POINTS_NAMES,
     draw_estimates,
     draw_gaussian_properties,
     draw_points_edges,
 )
+from ..conversion.quality import QUALITIES, expected_error
 from ..conversion.series import series_of
 from ..conversion.source_record import record_of, sources_of
 from ..doors import register_classes_factory

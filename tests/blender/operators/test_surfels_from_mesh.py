@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from splat_addon.blender.conversion.batch import ConversionBatch
-from splat_addon.blender.conversion.mesh_conversion import Choices
+from splat_addon.blender.conversion.choices import Choices
 from splat_addon.blender.density import Density
 from splat_addon.blender.export.light_linking import receivers_of
 

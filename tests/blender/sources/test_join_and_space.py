@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from splat_addon.blender.conversion import prediction
-from splat_addon.blender.conversion.mesh_conversion import Choices
+from splat_addon.blender.conversion.choices import Choices
 from splat_addon.blender.density import Density
 from splat_addon.blender.ui.predicted import prediction as sidebar_text
 
