@@ -12,6 +12,7 @@ from ..doors import register_classes_factory
 from ..fingerprints import of_array
 from ..geometry.attributes import has_surfels
 from ..geometry.stored_surfels import read_field
+from ..geometry.surfel_files import file_of
 from ..ids import POINT_ATTRIBUTES, SELECT_STRAYS
 from ..spoken import said
 
@@ -57,7 +58,11 @@ class OBJECT_OT_surfels_select_strays(bpy.types.Operator):
         owner = context.active_object
         is_mesh = owner is not None and owner.type == "MESH" and context.mode in ("OBJECT", "EDIT_MESH")
         if is_mesh and has_surfels(owner.data):
-            return True
+            if not file_of(owner):
+                return True
+            # deleting some of the coarsest would change no picture
+            cls.poll_message_set(said("Select an object whose surfels are in the .blend, in Object Mode"))
+            return False
         cls.poll_message_set(said("Select an object of surfels, in Object Mode or Edit Mode"))
         return False
 

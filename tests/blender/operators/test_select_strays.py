@@ -49,3 +49,8 @@ def test_a_surfel_that_cannot_be_drawn_is_a_stray(scan):
     scan.data.attributes["scale"].data[3].vector = 0, 0, 0
     bpy.ops.object.surfels_select_strays()
     assert selected(scan) == [3, 205, 400]
+
+
+def test_surfels_in_a_file_are_not_selected_as_pictures_would_keep_them(scan):
+    scan.data.surfel_splatting.file = "//scan.surfelblocks"
+    assert not bpy.ops.object.surfels_select_strays.poll()
