@@ -30,6 +30,10 @@ COLOR_ITEMS = (
 )
 
 
+#: Those that can be chosen before anything is read.
+IMPORT_ITEMS = tuple(item for item in COLOR_ITEMS if item[0] != "ATTRIBUTE")
+
+
 @on_change("Coloring surfels")
 def _read_again(settings, context) -> None:
     """Make a 3D view read the scene again; Blender does not report changes that a script makes."""

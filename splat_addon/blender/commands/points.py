@@ -22,7 +22,7 @@ from ..geometry.points_extraction import has_points
 from ..geometry.stored_surfels import read_surfels
 from ..ids import OBJECT_SETTINGS
 from ..operators.file_paths import file_sentence
-from ..scan_color_settings import COLOR_ITEMS
+from ..scan_color_settings import IMPORT_ITEMS
 from .convert import is_blend_there, named, place, result
 from .out_paths import file_at, made_room
 from .written_files import save_blend
@@ -91,7 +91,7 @@ def add_points_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--color-by",
         type=str.upper,
-        choices=[name for name, *_ in COLOR_ITEMS if name != "ATTRIBUTE"],
+        choices=[name for name, *_ in IMPORT_ITEMS],
         help="what the colours of files show, if not their own",
     )
 

@@ -55,7 +55,10 @@ class FileStoring:
 
     def _write_surfels(self, path: str | os.PathLike, progress: Callable[[float, str], bool]) -> int:
         if self._color_by != "COLOR":
-            raise ValueError("The file has surfels or Gaussian splats, which keep their colours; leave out --color-by.")
+            raise ValueError(
+                "The file has surfels or Gaussian splats, which keep their colours; color by Own Colors, or leave out "
+                "--color-by."
+            )
         if is_surfel_ply(self._source):
             parts = PlyPortions(self._source)
             count = write_blocks(path, parts, progress, expected=len(parts))

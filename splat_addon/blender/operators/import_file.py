@@ -32,7 +32,8 @@ from ..conversion.surfel_objects import select_only
 from ..geometry.scene_offset import Surroundings, keep_offset
 from ..geometry.stored_surfels import read_surfels
 from ..geometry.surfel_files import relative_path
-from ..ids import IMPORT_FILE
+from ..ids import IMPORT_FILE, OBJECT_SETTINGS
+from ..scan_color_settings import IMPORT_ITEMS
 from ..spoken import said
 from .file_paths import absolute, file_sentence, path_property
 from .menu_entry import with_menu_entry
@@ -101,6 +102,13 @@ contents tell"""
         default="DISPLAY",
     )
 
+    color_by: EnumProperty(
+        name="Color by",
+        description="What the surfels' colors show",
+        items=IMPORT_ITEMS,
+        default="COLOR",
+    )
+
     has_scan_look: BoolProperty(
         name="Scan Look",
         description=(
@@ -123,7 +131,7 @@ contents tell"""
     def draw(self, context):
         self.layout.use_property_split = True
         self.layout.use_property_decorate = False
-        for name in ("has_scan_look", "keeps_in_file", "is_series", "most_points", "float_colors"):
+        for name in ("has_scan_look", "color_by", "keeps_in_file", "is_series", "most_points", "float_colors"):
             self.layout.prop(self, name)
         self._draw_text_columns()
         header, body = self.layout.panel("surfels_import_gaussians")
@@ -188,7 +196,9 @@ contents tell"""
         # repeated from the redo panel, it replaces the file whose object was undone
         own = self._kept_as().get(path, "")
         kept = absolute(f"//{Path(self._name).stem}{SUFFIX}")
-        return Keeping(path, kept, self, context.scene, Reading.of(self), own)
+        # height is shown without being stored
+        stored = "COLOR" if self.color_by == "HEIGHT" else self.color_by
+        return Keeping(path, kept, self, context.scene, Reading.of(self), own, stored)
 
     def _kept_as(self) -> dict[str, str]:
         """Path of a file -> id of the file of blocks that was made of it."""
@@ -199,11 +209,13 @@ contents tell"""
     def _finish(self, context, work):
         if isinstance(work, Opening):
             count = self._open(context, absolute(self.filepath), is_own=False)
+            self._color(context.view_layer.objects.active)
             self.report({"INFO"}, said("{name}: {count:,} surfels", name=self._name, count=count))
         elif isinstance(work, FileImport):
             made = work.place(context)
             if self.has_scan_look:
                 work.show(context, made)
+            self._color(made)
             select_only(context, [made])
             self.report({"INFO"}, said("{name}: {count:,} surfels", name=self._name, count=len(work.surfels)))
             self._tell(work.notes)
@@ -213,13 +225,20 @@ contents tell"""
         else:
             self._finish_keeping(context, work)
 
+    def _color(self, made):
+        """Let a new object show what was chosen."""
+        if self.color_by != "COLOR":
+            getattr(made, OBJECT_SETTINGS).color_by = self.color_by
+
     def _finish_keeping(self, context, keeping):
         if keeping.offset is not None and (note := keep_offset(context.scene, keeping.offset)):
             self._tell([note])
         count = self._open(context, keeping.path, is_own=True)
         self._kept_as()[absolute(self.filepath)] = id_of(keeping.path)
+        made = context.view_layer.objects.active
+        if self.color_by == "HEIGHT":  # all else is in the file
+            self._color(made)
         if keeping.offset is not None and self.has_scan_look:
-            made = context.view_layer.objects.active
             self._tell(show_scan(context, made, read_surfels(made.data)[0].positions))
         self.report({"INFO"}, said("{count:,} surfels -> {path}", count=count, path=keeping.path))
         self._tell(keeping.notes())
@@ -258,15 +277,15 @@ class Opening:
 class Keeping(Writing):
     """A file on its way to a file of blocks. offset: as of `FileStoring`."""
 
-    def __init__(
-        self, source: str, path: str, properties: PointsProperties, scene: bpy.types.Scene, reading: Reading, own=""
-    ):
-        """The arguments are those of `FileImport` and `Writing`. Raises OSError if the file cannot be read."""
+    def __init__(self, source: str, path: str, properties: PointsProperties, scene: bpy.types.Scene, reading: Reading,
+                 own="", color_by="COLOR"):  # fmt: skip
+        """The arguments are those of `FileImport`, `Writing` and `FileStoring`. Raises OSError if the file cannot be
+        read."""
         os.stat(source)
         super().__init__(path, (), 0, own)
         eye = viewpoint(properties, scene)
         eye = None if eye is None else np.array(eye)
-        self._storing = FileStoring(source, properties, reading, "COLOR", eye, Surroundings.of(scene))
+        self._storing = FileStoring(source, properties, reading, color_by, eye, Surroundings.of(scene))
 
     @property
     def offset(self) -> np.ndarray | None:

@@ -209,6 +209,16 @@ def test_without_intensity_a_scan_without_colors_shows_its_height_and_with_color
     assert [each.surfel_splatting.color_by for each in bpy.data.objects if each.type == "MESH"] == ["HEIGHT", "COLOR"]
 
 
+@pytest.mark.parametrize("is_kept", [False, True])
+def test_an_import_shows_the_height_that_was_chosen(is_kept, tmp_path):
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
+    (tmp_path / "a.xyz").write_text("".join(f"{k % 20} {k // 20} {k % 3} {k % 5}\n" for k in range(400)))
+    choices = {"color_by": "HEIGHT", "keeps_in_file": is_kept, "isolated": "KEEP"}
+    bpy.ops.import_scene.surfels_ply(filepath=str(tmp_path / "a.xyz"), text_columns="x y z intensity", **choices)
+    made = bpy.context.object
+    assert made.surfel_splatting.color_by == "HEIGHT" and bool(made.data.surfel_splatting.file) == is_kept
+
+
 def test_views_show_all_of_a_large_scan(tmp_path):
     """Views of what is small keep what they have."""
     (view,) = (a.spaces.active for a in bpy.context.window.screen.areas if a.type == "VIEW_3D")
