@@ -176,7 +176,7 @@ def _among_thinned(found: _Found, thinned: _Thinned, coarse: Cells, queries: np.
     for size in np.unique(sizes):
         of, own = sizes == size, points[sizes == size]
         runs = of[query]
-        places = np.full((len(own), 1 << size), len(cells.order))
+        places = np.full((len(own), 1 << size), len(cells.order), np.int64)
         places[np.arange(1 << size) < totals[of, None]] = ranges(first[runs], counts[runs])
         places, squares = exactly_nearest(
             cells.columns, cells.place_of_point[own], places, found.count, coarse.unit / cells.unit
