@@ -71,7 +71,8 @@ def _hidden(unseen: np.ndarray, places: np.ndarray, cell: float, is_lonely: np.n
     hidden = unseen.all(axis=0) & ~is_lonely
     if hidden.mean() > _HIDDEN:
         rows = np.flatnonzero(~is_lonely)
-        for seen in in_order((lambda d=d: _seen_from(d, places[rows], cell)) for d in _directions()):
+        others = places[rows]
+        for seen in in_order((lambda d=d: _seen_from(d, others, cell)) for d in _directions()):
             hidden[rows[seen]] = False
     return hidden
 
@@ -83,11 +84,11 @@ def _counted(found: np.ndarray, columns: np.ndarray, neighbours: np.ndarray) -> 
     sides, both = np.empty(len(votes), np.float32), np.empty(len(votes), np.float32)
 
     def count(some: slice):
-        at = np.ascontiguousarray(neighbours[some].T)
-        cosine = sum(column[at] * column[some] for column in columns)
+        at = neighbours[some].T.astype(np.intp, order="C")
+        cosine = sum(column.take(at) * column[some] for column in columns)
         weight = np.exp((np.abs(cosine) - 1) / np.float32(_ALIKE**2))
-        both[some] = seen[some] + np.einsum("kn,kn->n", weight, seen[at])
-        sides[some] = votes[some] + np.einsum("kn,kn->n", weight * np.sign(cosine), votes[at])
+        both[some] = seen[some] + np.einsum("kn,kn->n", weight, seen.take(at))
+        sides[some] = votes[some] + np.einsum("kn,kn->n", np.copysign(weight, cosine), votes.take(at))
 
     in_portions(len(votes), CHUNK, count)
     return sides, both
@@ -114,11 +115,16 @@ def _seen_from(direction: np.ndarray, places: np.ndarray, cell: float) -> np.nda
     """(N,) bool: whether nothing hides (N, 3) places from far away in a direction."""
     aside = np.cross(direction, np.eye(3, dtype=np.float32)[np.abs(direction).argmin()])
     aside /= np.linalg.norm(aside)
+    aside /= np.float32(cell)
     u, v, height = np.stack([aside, np.cross(direction, aside), direction]) @ places.T
-    # a border of empty cells
-    row, column = (((along - along.min()) / cell).astype(np.int64) + 1 for along in (u, v))
+    for along in (u, v):
+        # a border of empty cells
+        along -= along.min() - 1
+    row, column = u.astype(np.int32), v.astype(np.int32)
     nearest = np.full((row.max() + 2, column.max() + 2), -np.inf, np.float32)
-    cells = row * nearest.shape[1] + column
+    row *= nearest.shape[1]
+    row += column
+    cells = row.astype(np.intp)
     np.maximum.at(nearest.reshape(-1), cells, height)
     for _ in range(2):
         around = nearest.copy()
