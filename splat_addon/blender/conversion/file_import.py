@@ -16,7 +16,8 @@ from ...doubts import doubts
 from ...interchange import FLOAT_COLORS, Gaussians, Points, read_contents, scanner_path
 from ...sampling import surfels_from_points
 from ...surfels import Surfels
-from ..geometry.attributes import fill, offset_of
+from ..geometry.attributes import fill
+from ..geometry.offsets import offset_of
 from ..geometry.scan_attributes import keep_scanner_path, write_scan_attributes
 from ..geometry.scene_offset import Surroundings, keep_offset, taken_from
 from ..geometry.sources import is_surfel_object

@@ -20,7 +20,8 @@ from ...faults import sentence_of
 from ...interchange import FLOAT_COLORS, file_numbered, numbered_files
 from ...surfels import empty_surfels
 from ..doors import on_change, unattended, with_handlers
-from ..geometry.attributes import fill, numbers_of, offset_of
+from ..geometry.attributes import fill
+from ..geometry.offsets import numbers_of, offset_of
 from ..ids import SERIES, SERIES_ORIGIN
 from ..registration import with_property
 from ..spoken import said

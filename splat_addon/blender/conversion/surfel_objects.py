@@ -10,7 +10,8 @@ import numpy as np
 from mathutils import Matrix
 
 from ...surfels import Surfels
-from ..geometry.attributes import fill, offset_of, write_surfels
+from ..geometry.attributes import fill, write_surfels
+from ..geometry.offsets import offset_of
 from ..geometry.points_proxy import show_as_points
 from ..ids import MESH_SETTINGS
 from .placement import placed

@@ -9,8 +9,9 @@ from enum import Flag, auto
 
 import bpy
 
-from ..geometry.attributes import Points, has_surfels, has_surfels_beside_faces
+from ..geometry.attributes import has_surfels, has_surfels_beside_faces
 from ..geometry.gaussian_clouds import is_gaussian_cloud
+from ..geometry.offsets import Points
 from ..geometry.points_proxy import shown_points, shows_as_points
 
 

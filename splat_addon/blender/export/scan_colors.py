@@ -16,8 +16,8 @@ from ...primaries import converted
 from ...rendering.scene import Paint
 from ...surfels import Surfels
 from ..enum_values import check_choices
-from ..geometry.attributes import offset_of
 from ..geometry.derived import Derived
+from ..geometry.offsets import offset_of
 from ..geometry.reading import read_values
 from ..ids import OBJECT_SETTINGS
 from ..materials.ramps import table

@@ -21,7 +21,8 @@ import numpy as np
 from ...rendering.background import in_background
 from ...rendering.detail.stand_in import LEFT_OUT, STAND_IN, spread, standing_in, widened
 from ...surfels import Surfels, prepared, valid_surfels
-from ..geometry.attributes import SOLID, Points
+from ..geometry.attributes import SOLID
+from ..geometry.offsets import Points
 from ..geometry.stored_surfels import (
     REST_FIELD,
     Stored,

@@ -14,7 +14,8 @@ from ...primaries import recolored
 from ...rendering import Instance
 from ...streaming import Stream
 from ...surfels import Surfels
-from ..geometry.attributes import offset_of, since_written
+from ..geometry.attributes import since_written
+from ..geometry.offsets import offset_of
 from ..geometry.points_proxy import is_solid, shown_points
 from ..geometry.reading import own_materials
 from ..geometry.stored_surfels import Stored

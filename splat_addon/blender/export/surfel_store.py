@@ -11,8 +11,8 @@ import numpy as np
 from ...rendering.detail.hierarchies import replaced
 from ...surfels import Surfels
 from ..conversion.changed_sources import ChangedSources
-from ..geometry.attributes import Points
 from ..geometry.derived import Derived
+from ..geometry.offsets import Points
 from ..geometry.stored_surfels import Stored, have_same_values, read_beside, read_stored
 from ..materials.surface_textures import TextureStore
 from .scan_colors import Column

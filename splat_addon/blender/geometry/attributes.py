@@ -17,9 +17,9 @@ from ...surfels import Surfels
 from .. import working_space
 from ..ids import OFFSET, POINT_ATTRIBUTES, PRIMARIES, REST, SOLID, PointAttribute
 from .gaussian_clouds import is_gaussian_cloud
+from .offsets import Points, numbers_of
+from .stored_surfels import read_surfels as read_surfels  # users' scripts import it from here
 
-#: Data-blocks whose points can be surfels.
-Points = bpy.types.Mesh | bpy.types.PointCloud
 #: An attribute with either name on a mesh without faces marks the points as surfels.
 MARKS = tuple(POINT_ATTRIBUTES[field].name for field in ("rotations", "scales"))
 #: How far the matrices of one working space differ between versions of Blender; those of two differ by tenths.
@@ -78,19 +78,6 @@ def set_offset(mesh: bpy.types.Mesh, offset: np.ndarray) -> None:
         mesh[OFFSET] = np.asarray(offset, np.float64).tolist()
     else:
         mesh.pop(OFFSET, None)
-
-
-def offset_of(mesh: bpy.types.ID) -> np.ndarray:
-    """What is added to the positions of a surfel mesh of the .blend, (3,) float64. What modifiers make of the mesh has
-    no such property, but the same offset."""
-    return numbers_of(mesh, OFFSET, 3, np.zeros(3))
-
-
-def numbers_of(owner: bpy.types.ID, name: str, count: int, otherwise: np.ndarray) -> np.ndarray:
-    """(count,) float64 of a custom property, if it holds so many finite numbers."""
-    values = np.ravel(owner.get(name, ()))
-    is_known = values.shape == (count,) and np.issubdtype(values.dtype, np.number) and np.isfinite(values).all()
-    return values.astype(np.float64) if is_known else otherwise
 
 
 def since_written(mesh: Points) -> np.ndarray:

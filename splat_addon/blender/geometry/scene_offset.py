@@ -15,7 +15,7 @@ import numpy as np
 from ...interchange import middle_of, needs_offset, offset_for
 from ..ids import SCENE_OFFSET
 from ..spoken import said
-from .attributes import numbers_of
+from .offsets import numbers_of
 from .sources import is_surfel_object
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from ...interchange import followed
 from ...surfels import LAYOUT, OPTIONAL_LAYOUT, Surfels, usable_rows, valid_surfels
 from ..ids import POINT_ATTRIBUTES, REST, SOLID, PointAttribute
-from .attributes import Points, offset_of
+from .offsets import Points, offset_of
 from .reading import read_values
 
 #: The attributes that are not floats.

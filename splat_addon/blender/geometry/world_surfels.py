@@ -13,7 +13,8 @@ from ...interchange import transformed
 from ...primaries import recolored
 from ...surfels import Surfels
 from ..working_space import surfels_to_rec709
-from .attributes import has_surfels, offset_of, since_written
+from .attributes import has_surfels, since_written
+from .offsets import offset_of
 from .points_proxy import points_of
 from .stored_surfels import read_surfels
 

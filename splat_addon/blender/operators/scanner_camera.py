@@ -12,7 +12,7 @@ from bpy.props import EnumProperty
 from mathutils import Quaternion, Vector
 
 from ..doors import register_classes_factory
-from ..geometry.attributes import offset_of
+from ..geometry.offsets import offset_of
 from ..geometry.scan_attributes import scanner_path_of
 from ..geometry.sources import is_surfel_object
 from ..geometry.stored_surfels import read_surfels
