@@ -61,8 +61,8 @@ class TileDrawing:
             of_picture = resources, frame_plan, shared.scene, tile_camera, shared.settings
             context = TileContext(*of_picture, view=view, shared=shared, rectangle=tile, repeats=repeats)
             context.bring_blocks()
-            if follows or repeats.hold(resources):
-                target = yield from execution.again(repeats, follows)
+            if follows:
+                target = yield from execution.again(repeats)
             else:
                 for p in repeats.found("with cuts", partial(context.with_cuts, view.placed)):
                     context.drawn_count(p)  # chooses them

@@ -14,6 +14,7 @@ from splat_addon.rendering.plan.frame_plan import FramePlan
 from splat_addon.rendering.plan.repeats import Repeats
 from splat_addon.rendering.plan.tile import TileContext
 from splat_addon.rendering.scene import Instance
+from splat_addon.rendering.upload.resources import Resources
 from splat_addon.sampling import TriangleMesh, sample_mesh
 from tests.rendering.agreement_shots import SHOTS
 
@@ -74,25 +75,29 @@ def test_samples_are_drawn_anew_only_where_hidden_objects_are_looked_for(render,
     np.testing.assert_array_equal(frame.color, anew.color)
 
 
-def test_calls_hold_for_the_textures_that_they_drew_into():
-    kept, called, texture = Repeats(records=True), [], object()
-    resources = SimpleNamespace(textures={"depth": texture, "more": None}, made_from={"shadows": 1})
+def test_calls_are_kept_of_whole_samples():
+    kept, called = Repeats(records=True), []
     kept.begin()
     kept.call(called.append, 1)
-    kept.uses("depth", texture)
+    kept.call(called.append, 2, lasts=True)
     kept.end(0, "p", "target")
-    kept.shares("shadows", 1)
-    assert not kept.hold(resources), "the sample is not complete"
+    assert not kept.passes, "the sample is not complete"
     kept.complete()
-    ((number, p, calls, lasting, target),) = kept.passes
+    ((number, p, calls, target),) = kept.passes
     for call in calls:
         call()
-    assert called == [1, 1] and (number, p, lasting, target) == (0, "p", [], "target")
-    assert kept.hold(resources)
-    for other in ({"textures": {"depth": object()}}, {"made_from": {"shadows": 2}}, {"made_from": {}}):
-        assert not kept.hold(SimpleNamespace(**vars(resources) | other))
-    kept.restart()
+    assert called == [1, 2, 1] and (number, p, target) == (0, "p", "target")
+    kept.give_up()
+    kept.complete()
     assert not kept.passes
+
+
+def test_a_picture_between_two_samples_is_not_followed():
+    kept, resources = Repeats(), Resources(SimpleNamespace())
+    assert not resources.follows(kept) and resources.follows(kept)
+    assert not resources.follows(Repeats()) and not resources.follows(kept)
+    resources.release()
+    assert not resources.follows(kept)
 
 
 @pytest.mark.parametrize("name", SAMPLED)

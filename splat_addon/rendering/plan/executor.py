@@ -40,13 +40,13 @@ class Execution:
         tile.repeats.complete()
         return target
 
-    def again(self, repeats: Repeats, follows: bool) -> Generator[Pause, None, Target]:
-        """Make the calls of a sample again. follows: whether nothing else was drawn since; returns as `run`."""
+    def again(self, repeats: Repeats) -> Generator[Pause, None, Target]:
+        """Make the calls of the sample before again; returns as `run`."""
         target = None
-        for number, p, calls, lasting, into in repeats.passes:
+        for number, p, calls, into in repeats.passes:
             yield Pause(target)
             self._told(p, number)
-            for call in calls if follows else (*lasting, *calls):
+            for call in calls:
                 call()
             target = into
             self._done(p, target)
@@ -63,7 +63,6 @@ class Execution:
             if made_from.pop(key, None) != value:
                 yield from self._drawn(p, tile)
             made_from[key] = value
-            tile.repeats.shares(key, value)
         return None
 
     def _drawn(self, p: Pass, tile: TileContext) -> Generator[Pause, None, Target | None]:

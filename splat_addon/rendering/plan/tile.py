@@ -63,8 +63,7 @@ class TileContext(CutChoice):
 
     def texture(self, texture: Texture, is_next: bool = False) -> DeviceTexture:
         """A texture of the plan; is_next: as in `key`."""
-        key = self.key(texture, is_next)
-        return self.repeats.uses(key, self.resources.texture(key))
+        return self.resources.texture(self.key(texture, is_next))
 
     def swap(self, texture: Texture) -> None:
         """Swap the two textures of one that was updated."""

@@ -283,6 +283,7 @@ class Resources:
         self._pools.clear()
         self.textures.clear()
         self.made_from.clear()
+        self._last_drawn = None
 
 
 #: The share of a job that building a hierarchy takes, and of what is left, finding the order.
