@@ -14,7 +14,7 @@ from splat_addon.rendering import Camera, Instance, Light, Material, Scene, Sett
 from splat_addon.sampling import DEFAULT_CREASE_ANGLE, TriangleMesh
 from tests.plain import sample_mesh
 
-SIZE = (112, 112)
+SIZE = (80, 80)
 CAMERA = Camera.perspective(look_at((1.5, -4.2, 1.2), (0, 0, 0)), 0.62, SIZE, near=0.1, far=100)
 CHALK = (Material(roughness=1.0, ior=1.0),)
 PLACE = (2.0, -3.0, 3.2)
@@ -121,7 +121,7 @@ def with_and_without(render):
 def falsely_dark(truth, with_shadow, without) -> float:
     """The share of the pixels lit by the whole lamp that its shadow nevertheless darkens."""
     clear = inside(truth == 1) & (without > 0.05 * without.max())
-    assert clear.sum() > 500
+    assert clear.sum() > 300
     return np.count_nonzero(clear & (with_shadow < 0.98 * without)) / np.count_nonzero(clear)
 
 
@@ -216,5 +216,5 @@ def test_a_shadow_begins_where_a_box_stands(light, with_and_without):
     truth = arriving(trimesh.util.concatenate([box, floor]), LIGHTS[light], camera)
     drawn = with_and_without([instance(box, 96, False), instance(floor, 128, False)], LIGHTS[light], camera)
     dark = inside(inside(truth == 0)) & (drawn[1] > 0.05 * drawn[1].max())
-    assert dark.sum() > 300
+    assert dark.sum() > 150
     assert np.count_nonzero(dark & (drawn[0] > 0.1 * drawn[1])) == 0
