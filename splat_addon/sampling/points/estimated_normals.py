@@ -12,13 +12,13 @@ import numpy as np
 from .cleanup import off_surface
 from .noise import NOISY, noise_levels, of_surroundings, smoothed_normals, spacings
 from .normals import local_planes
-from .orientation import consistent_signs, facing_outward, facing_scanners, facing_viewpoint
+from .orientation import consistent_signs, facing_outward, facing_scanners, facing_viewpoint, scanned_sides
 from .outside import seen_sides
 
 
 @dataclass(frozen=True, eq=False)
 class EstimatedNormals:
-    """normals: (N, 3) float64 unit. parts: number of connected parts that were oriented.
+    """normals: (N, 3) float64 unit. parts: number of connected parts that were oriented; 0 where scanners tell sides.
     off: lie off the surface. is_noisy: have normals from wider neighbourhoods. is_untrusted: lie on no surface, and
     have the direction of their surroundings: (N,) bool each.
     shifts: (N, 3) from the points to their planes, 0 where they are not noisy; None if none is.
@@ -69,19 +69,28 @@ def estimated_normals(
         normals[rows], middles, is_untrusted[rows] = smoothed_normals(*wider)
         shifts = np.zeros(positions.shape)
         shifts[rows] = normals[rows] * np.einsum("nc,nc->n", normals[rows], middles)[:, None]
-    is_blind = viewpoint is None and (scanners is None or np.isnan(scanners).any())
-    sides = seen_sides(positions, normals, own, spacing) if is_blind else None
-    signs, part, faces_outside = consistent_signs(
-        positions, normals, nearest, sides, lambda share: told(0.6 + 0.4 * share)
-    )
-    normals *= signs[:, None]
-    if viewpoint is None:
-        normals *= np.where(faces_outside, 1, facing_outward(positions, normals, part))[:, None]
+    if scanners is not None and np.isfinite(scanners).all():
+        signs, parts = scanned_sides(positions, normals, nearest, scanners), 0
     else:
-        normals *= facing_viewpoint(positions, normals, part, viewpoint)[:, None]
-    if scanners is not None:
-        normals *= facing_scanners(positions, normals, scanners)[:, None]
+        signs, parts = _signs(positions, normals, nearest, own, spacing, viewpoint, scanners, told)
+    normals *= signs[:, None]
     rows = np.flatnonzero(is_untrusted)
     normals[rows] = of_surroundings(normals, nearest, rows)
     off = off_surface(planes.heights(), noise, spacing, nearest)
-    return EstimatedNormals(normals, int(part.max()) + 1, off, is_noisy, is_untrusted, shifts)
+    return EstimatedNormals(normals, parts, off, is_noisy, is_untrusted, shifts)
+
+
+def _signs(positions, normals, nearest, own, spacing, viewpoint, scanners, told) -> tuple[np.ndarray, int]:
+    """(N,) signs where scanners are not known of every point, and the number of connected parts."""
+    sides = seen_sides(positions, normals, own, spacing) if viewpoint is None else None
+    signs, part, faces_outside = consistent_signs(
+        positions, normals, nearest, sides, lambda share: told(0.6 + 0.4 * share)
+    )
+    normals = normals * signs[:, None]
+    if viewpoint is None:
+        turns = np.where(faces_outside, 1, facing_outward(positions, normals, part))
+    else:
+        turns = facing_viewpoint(positions, normals, part, viewpoint)
+    if scanners is not None:
+        turns = turns * facing_scanners(positions, normals * turns[:, None], scanners)
+    return signs * turns, int(part.max()) + 1

@@ -148,14 +148,47 @@ def facing_viewpoint(positions: np.ndarray, normals: np.ndarray, part: np.ndarra
 #: Cosine below which a surface is so steep to its scanner that noise decides which side is seen.
 _STEEP = 0.1
 
+#: How often steep points are asked again, once all their neighbours have a side.
+_REFINED = 3
+
 
 def facing_scanners(positions: np.ndarray, normals: np.ndarray, scanners: np.ndarray) -> np.ndarray:
     """(N,) int8 signs, so that normals face (N, 3) scanners, which saw no back; 1 where a scanner is NaN, or the
     surface is steep to it."""
-    towards = scanners - positions
     with np.errstate(invalid="ignore"):
-        cosines = np.einsum("ij,ij->i", towards, normals) / np.maximum(np.linalg.norm(towards, axis=1), 1e-300)
-        return np.where(cosines < -_STEEP, -1, 1).astype(np.int8)
+        return np.where(_cosines_to(scanners, positions, normals) < -_STEEP, -1, 1).astype(np.int8)
+
+
+def scanned_sides(
+    positions: np.ndarray, normals: np.ndarray, neighbours: np.ndarray, scanners: np.ndarray
+) -> np.ndarray:
+    """(N,) int8 signs, so that normals face (N, 3) finite scanners; those of surfaces that are steep to them agree with
+    their neighbours', which takes a fraction of the time of `consistent_signs`.
+
+    positions, normals: (N, 3) float64. neighbours: (N, k) indices.
+    """
+    columns, directions = np.ascontiguousarray(positions.T), np.ascontiguousarray(normals.T, np.float32)
+    cosines = _cosines_to(scanners, positions, normals)
+    facing, steep = np.where(cosines < 0, -1, 1).astype(np.float32), np.flatnonzero(np.abs(cosines) < _STEEP)
+    near = neighbours[steep, :GRAPH_NEIGHBOURS]
+    agreement = _agreement(columns, directions, np.repeat(steep, near.shape[1]), near.ravel()).reshape(near.shape)
+    signs = facing.copy()
+    signs[steep] = 0
+    rest = np.arange(len(steep))
+    while len(rest):
+        found = np.sign((agreement[rest] * signs[near[rest]]).sum(axis=1))
+        # what no point that is not steep leads to follows its own scanner
+        signs[steep[rest]] = found if found.any() else facing[steep[rest]]
+        rest = rest[found == 0] if found.any() else rest[:0]
+    for _ in range(_REFINED):
+        votes = (agreement * signs[near]).sum(axis=1)
+        signs[steep] = np.where(votes < 0, -1, np.where(votes > 0, 1, signs[steep]))
+    return signs.astype(np.int8)
+
+
+def _cosines_to(scanners: np.ndarray, positions: np.ndarray, normals: np.ndarray) -> np.ndarray:
+    towards = scanners - positions
+    return np.einsum("ij,ij->i", towards, normals) / np.maximum(np.linalg.norm(towards, axis=1), 1e-300)
 
 
 def _agreement(columns: np.ndarray, directions: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:

@@ -22,7 +22,7 @@ class PointsReport:
     untrusted: those of them that lie on no surface, and have the direction of their surroundings.
     limited: surfels whose estimated radius reached across a gap, and was reduced.
     bright_colors: surfels whose colour is far above white.
-    parts: connected parts, each oriented as a whole; 0 if no normal was estimated.
+    parts: connected parts, each oriented as a whole; 0 if no normal was estimated, or all face their scanners.
     creases: surfels that end at an edge between planes through their neighbours.
     kept: (surfels,) which of the points became surfels, ascending; None before that is known.
     """
@@ -58,10 +58,9 @@ class PointsReport:
     def notes(self) -> tuple[str, ...]:
         """One sentence about what was left out, one about colours that are doubtful, and one about the estimates."""
         skipped = ", ".join(f"{count:,} points {reason}" for reason, count in self.skipped().items())
+        oriented = f"in {self.parts:,} connected parts" if self.parts else "facing their scanners"
         made_up = {
-            f"normals of {self.estimated_normals:,} points from their neighbours, in {self.parts:,} connected parts": (
-                self.estimated_normals
-            ),
+            f"normals of {self.estimated_normals:,} points from their neighbours, {oriented}": self.estimated_normals,
             f"of these, for noise, those of {self.noisy:,} points from one and a half times as many": self.noisy,
             f"directions of {self.untrusted:,} points that lie on no surface from their surroundings": self.untrusted,
             f"radii of {self.estimated_radii:,} points from their neighbours": self.estimated_radii,

@@ -7,7 +7,7 @@ import pytest
 from splat_addon.sampling import surfels_from_points
 from splat_addon.sampling.points.neighbours import nearest_neighbours
 from splat_addon.sampling.points.normals import local_planes
-from splat_addon.sampling.points.orientation import consistent_signs
+from splat_addon.sampling.points.orientation import consistent_signs, scanned_sides
 
 
 def angles(surfels, normals):
@@ -112,3 +112,21 @@ def test_points_on_a_line_get_a_normal_across_it():
     points = np.outer(np.arange(9.0), (1, 2, 3))
     (normal,) = local_planes(points, np.arange(1, 9)[None]).normals
     assert np.linalg.norm(normal) == pytest.approx(1) and abs(normal @ (1, 2, 3)) < 1e-6
+
+
+def test_surfaces_steep_to_their_scanners_are_on_the_side_of_their_neighbours():
+    angle, depth, across = np.linspace(0, np.pi / 2, 12), np.arange(0.7, 30, 0.7), np.arange(0, 10, 0.7)
+    # a wall below a round edge that is seen from above
+    profile = np.concatenate([5 * np.stack([np.sin(angle), np.cos(angle)], 1), np.stack([0 * depth + 5, -depth], 1)])
+    outward = np.concatenate([np.stack([np.sin(angle), np.cos(angle)], 1), np.tile((1.0, 0.0), (len(depth), 1))])
+    x, y, z = np.broadcast_arrays(profile[:, None, 0], across, profile[:, None, 1])
+    points, normals = (
+        np.stack([x, y, z], -1).reshape(-1, 3),
+        np.repeat(np.insert(outward, 1, 0, axis=1), len(across), 0),
+    )
+    flips = np.random.default_rng(0).choice((-1, 1), len(points))
+    near, scanners = nearest_neighbours(points, 8)[0], np.tile((0, 0, 1e6), (len(points), 1))
+    assert (scanned_sides(points, normals * flips[:, None], near, scanners) == flips).all()
+    wall = normals[:, 2] == 0
+    near = nearest_neighbours(points[wall], 8)[0]
+    assert (np.abs(scanned_sides(points[wall], normals[wall], near, scanners[wall])) == 1).all()
