@@ -23,7 +23,7 @@ class Noted(NamedTuple):
 
 
 def noted(tile: TileContext) -> dict[int, Noted]:
-    """What is noted of each kind, by the id of one instance of it, which the plan keeps."""
+    """The stored splats of each kind, by the id of one of its instances, which the plan keeps."""
     return tile.shared.kept("noted", lambda: _found(tile))
 
 
@@ -37,7 +37,7 @@ def _found(tile: TileContext) -> dict[int, Noted]:
 
 
 def first_noted(tile: TileContext, placed: DrawItem) -> float:
-    """The value `first_noted` of `uniforms.DRAW`."""
+    """The number of the first stored splat of an object; -1 if visibility does not note its splats."""
     if not placed.items.show_nearest:
         return -1.0
     table = placed.items.table
