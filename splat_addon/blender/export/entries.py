@@ -9,12 +9,12 @@ import numpy as np
 
 
 def matrices_of(depsgraph: bpy.types.Depsgraph) -> np.ndarray:
-    """(n, 4, 4) float64 `matrix_world` of each, which may have numbers that are not finite."""
+    """(n, 4, 4) float32 `matrix_world` of each, which may have numbers that are not finite."""
     entries = depsgraph.object_instances
     numbers = np.empty(16 * len(entries), np.float32)
     entries.foreach_get("matrix_world", numbers)
     # Blender stores columns
-    return np.ascontiguousarray(numbers.reshape(-1, 4, 4).transpose(0, 2, 1), np.float64)
+    return numbers.reshape(-1, 4, 4).transpose(0, 2, 1)
 
 
 def kind_of(entry: bpy.types.DepsgraphObjectInstance) -> tuple:

@@ -165,6 +165,8 @@ def _placed(of_kinds: list[list[Instance]], of: np.ndarray, matrices: np.ndarray
     kinds."""
     rows, numbers = parts_at(of, list(map(len, of_kinds)))
     parts, moved = [part for own in of_kinds for part in own], matrices[rows]
+    if any(part.stream is not None for part in parts):
+        moved = moved.astype(np.float64)
     for number, part in enumerate(parts):
         if part.stream is not None:
             own = numbers == number

@@ -54,8 +54,8 @@ class LiveMesh:
 
     @property
     def matrices(self) -> np.ndarray:
-        """(n, 4, 4) the matrices of the places where it is sampled."""
-        return self.sampled_at.matrices
+        """(n, 4, 4) float64 matrices of the places where it is sampled."""
+        return self.sampled_at.matrices.astype(np.float64)
 
     @property
     def detail(self) -> float:

@@ -26,7 +26,7 @@ class Manner(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Places:
-    """n places of a mesh. of: (n,) which manner each is in. matrices: (n, 4, 4) float64."""
+    """n places of a mesh. of: (n,) which manner each is in. matrices: (n, 4, 4) float32."""
 
     manners: tuple[Manner, ...]
     of: np.ndarray

@@ -102,7 +102,8 @@ def placed_at(placed: Sequence[Placed], matrices: np.ndarray, of: np.ndarray | N
     affine: the last row of each stays what it always is.
     Raises ValueError with a sentence for numbers that no instance may have.
     """
-    matrices = np.asarray(matrices, np.float64).reshape(-1, 4, 4)
+    matrices = np.asarray(matrices)
+    matrices = (matrices if matrices.dtype == np.float32 else matrices.astype(np.float64)).reshape(-1, 4, 4)
     are_usable = ((matrices <= MAX_LENGTH) & (matrices >= -MAX_LENGTH)).all(axis=(1, 2))
     for row in np.flatnonzero(~are_usable)[:1]:
         replace(placed[row if of is None else of[row]], matrix_world=matrices[row])  # raises what is wrong
@@ -152,7 +153,9 @@ def _different(placed: Iterable[Placed]) -> tuple[list[Placed], np.ndarray]:
 
 
 def _exactly(matrices: np.ndarray) -> np.ndarray:
-    """(n, 3, 4) the rows of (n, 4, 4) float64 matrices that are not constant, as float32 if it holds them exactly."""
+    """(n, 3, 4) the rows of (n, 4, 4) matrices that are not constant, as float32 if it holds them exactly."""
+    if matrices.dtype == np.float32:
+        return np.ascontiguousarray(matrices[:, :3])
     with np.errstate(over="ignore", under="ignore"):
         single = matrices[:, :3].astype(np.float32)
     return single if np.array_equal(single, matrices[:, :3]) else np.ascontiguousarray(matrices[:, :3])
