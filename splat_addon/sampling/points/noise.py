@@ -33,6 +33,10 @@ _THICK = 0.055
 #: Radians by which normals differ that are averaged with a weight of 0.6.
 _ALIKE = 0.2
 
+#: A point beside a crease takes a neighbour's plane if the own one has this many times its variance. Of these planes the
+#: one with the least variance is taken, to which this share of the point's squared distance is added.
+_WORSE, _OFF = 2.5, 0.3
+
 #: Cosine below which normals are those of another side.
 _OPPOSED = -0.8
 
@@ -72,18 +76,21 @@ def smoothed_normals(
     # rows of 32 bytes are gathered at once
     moments = np.zeros((len(thick), 8), np.float32)
     moments[:, : len(PAIRS)] = planes.moments.T
-    directions = np.ascontiguousarray(planes.normals.T, np.float32)
+    directions, variances = np.ascontiguousarray(planes.normals.T, np.float32), planes.variances.astype(np.float32)
+    wide = middles.copy()
     heights, is_thick = np.empty((len(rows), 3)), np.empty(len(rows), bool)
 
     def widened(part: slice):
         own = rows[part]
         near = np.concatenate([neighbours[own].T, own[None]]).astype(np.intp, order="C")
         mean, joined = _joined_moments(middles, moments, near)
-        directions[:, own] = least_planes(joined)[0].T
+        normals, variances[own] = least_planes(joined)
+        directions[:, own], wide[:, own] = normals.T, mean
         heights[part] = mean.T - positions[own]
         is_thick[part] = thick.take(near).min(axis=0) > _THICK
 
     in_portions(len(rows), CHUNK // 2, widened, lambda share: report(0.5 * share))
+    _take_better_planes(directions, positions.T, wide, variances, neighbours, rows)
     _average(
         directions, neighbours[:, :_AROUND], rows, _alike_or_opposite, report=lambda share: report(0.5 + 0.5 * share)
     )
@@ -97,6 +104,36 @@ def of_surroundings(normals: np.ndarray, neighbours: np.ndarray, rows: np.ndarra
     _average(directions, neighbours[:, :_AROUND], rows, _alike, _ROUNDS_OF_ALIKE)
     _average(directions, neighbours, rows, _not_opposed, _ROUNDS)
     return unit(directions[:, rows].T.astype(np.float64))
+
+
+def _take_better_planes(
+    directions: np.ndarray,
+    places: np.ndarray,
+    middles: np.ndarray,
+    variances: np.ndarray,
+    neighbours: np.ndarray,
+    rows: np.ndarray,
+):
+    """Give some of (3, N) normals, in place, that of a neighbour whose plane fits its own neighbourhood much better: a
+    neighbourhood that ends at a crease instead of crossing it (Kuwahara et al. 1976 do so in pictures).
+
+    places, middles: (3, N) the points and where their planes are. variances: (N,) across the planes.
+    """
+    own = rows[variances[rows] > _WORSE * least_around(variances, neighbours)[rows]]
+    made = np.empty((3, len(own)), np.float32)
+
+    def taken(part: slice):
+        at = np.ascontiguousarray(neighbours[own[part]].T).astype(np.intp)
+        normals = [column.take(at) for column in directions]
+        off = sum(n * (p[own[part]] - m.take(at)) for n, p, m in zip(normals, places, middles, strict=True))
+        score = variances.take(at) + _OFF * off * off
+        best = score.argmin(axis=0)[None]
+        theirs = np.concatenate([np.take_along_axis(column, best, 0) for column in normals])
+        is_worse = variances[own[part]] > _WORSE * variances.take(np.take_along_axis(at, best, 0)[0])
+        made[:, part] = np.where(is_worse, theirs, directions[:, own[part]])
+
+    in_portions(len(own), CHUNK // 2, taken)
+    directions[:, own] = made
 
 
 def _average(
