@@ -33,8 +33,8 @@ _THICK = 0.055
 #: Radians by which normals differ that are averaged with a weight of 0.6.
 _ALIKE = 0.2
 
-#: A point beside a crease takes a neighbour's plane if the own one has this many times its variance. Of these planes the
-#: one with the least variance is taken, to which this share of the point's squared distance is added.
+#: A point beside a crease takes a neighbour's plane if the own one has this many times its variance. Of these planes
+#: the one with the least variance is taken, to which this share of the point's squared distance is added.
 _WORSE, _OFF = 2.5, 0.3
 
 #: Cosine below which normals are those of another side.
@@ -90,7 +90,7 @@ def smoothed_normals(
         is_thick[part] = thick.take(near).min(axis=0) > _THICK
 
     in_portions(len(rows), CHUNK // 2, widened, lambda share: report(0.5 * share))
-    _take_better_planes(directions, positions.T, wide, variances, neighbours, rows)
+    _take_better_planes(directions, positions.T, wide, variances, neighbours, rows[~is_thick])
     _average(
         directions, neighbours[:, :_AROUND], rows, _alike_or_opposite, report=lambda share: report(0.5 + 0.5 * share)
     )

@@ -36,6 +36,15 @@ def test_a_noisy_roof_keeps_its_ridge():
     assert (degrees(surfels.normals, side / np.sqrt(2))[beside] < 20).mean() > 0.9
 
 
+def test_points_close_to_a_noisy_ridge_take_the_plane_of_their_side():
+    """Neighbourhoods that cross the ridge give a third of them normals that are more than ten degrees off."""
+    surfels, _ = surfels_from_points(sheet(4000, 0.5, lambda x, y: -np.abs(x)))
+    from_ridge = surfels.positions[:, 0] + surfels.origin[0] - np.sqrt(4000) / 2
+    side = np.sign(from_ridge)[:, None] * (1, 0, 0) + (0, 0, 1)
+    beside = (np.abs(from_ridge) > 1) & (np.abs(from_ridge) < 3)
+    assert (degrees(surfels.normals, side / np.sqrt(2))[beside] < 10).mean() > 0.88
+
+
 def test_leaves_are_lit_as_their_surroundings():
     """Points in a ball lie on no surface: neighbours must not have directions of their own."""
     ball = np.random.default_rng(0).uniform(-1, 1, (12_000, 3))
