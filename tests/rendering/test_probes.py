@@ -219,7 +219,7 @@ def test_of_many_the_largest_have_probes_and_the_plan_counts_the_others():
     found, without = probes_of(Scene(polygons=many), camera())
     assert len(found) == MAX_PROBES and without == 3 and min(p.radius for p in found) > 0.129
     made = plan(Scene(polygons=many), camera(), SETTINGS)
-    assert dict(made.skipped)["reflections of 3 objects"] == f"there is room for {MAX_PROBES} probes"
+    assert made.limits[0].startswith("3 glossy objects") and f"{MAX_PROBES} probes" in made.limits[0]
 
 
 def test_the_border_of_a_map_is_beyond_its_edge():

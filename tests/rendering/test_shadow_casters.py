@@ -100,7 +100,17 @@ def test_whether_there_is_room_for_a_light_does_not_depend_on_the_camera():
     lamp = replace(LIGHTS["point"], position=(0.5, 0.2, 0.0))
     scene = replace(balls(lamp), lights=(lamp,) * 12)
     for camera in CAMERAS.values():
-        assert "shadows of 2 lights" in dict(plan(scene, camera, SETTINGS).skipped)
+        made = plan(scene, camera, SETTINGS)
+        assert "shadows of 2 lights" in dict(made.skipped)
+        assert any(said.startswith("2 lights cast no shadows") for said in made.limits)
+
+
+def test_suns_and_the_brightest_lamps_have_room_before_others():
+    lamps = [replace(LIGHTS["point"], energy=900 + 10 * k, position=(0.1 * k, 0, 0)) for k in range(12)]
+    scene = replace(balls(lamps[0]), lights=(*lamps, LIGHTS["sun"]))
+    made = plan(scene, CAMERAS["near"], SETTINGS)
+    assert {one.light for one in made.find(shadows).maps} == {*range(2, 13)}
+    assert made.find(shadows).without == 2
 
 
 @pytest.mark.parametrize("lamp", [(0, 0, 9, 1), (3, 1, 0.5, 1), (0, 0, 0, 1), (1, -2, 0.5, 0), (-30, 2, 5, 1)])

@@ -159,9 +159,8 @@ def _tell(engine, frame: Frame, notes: Notes, resources: Resources) -> None:
         notes.add(f"{name}{_SHORT}")
     for sentence in frame.stats["unread"]:
         notes.add(sentence)
-    for what in ("transparency", "finishes"):
-        if why := dict(frame.stats["plan"].skipped).get(what):
-            notes.add(why[0].upper() + why[1:])
+    for why in frame.stats["plan"].limits:
+        notes.add(why[0].upper() + why[1:])
     for sentence in notes.sentences():
         engine.report({"WARNING"}, sentence)
     last_frame_stats.clear()

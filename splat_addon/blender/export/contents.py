@@ -19,7 +19,8 @@ class Content(Flag):
     """What an entry has.
 
     SURFELS: those of its mesh or point cloud. SHOWN_POINTS: surfels that it shows as points, in the place of these.
-    FACES: of its mesh. BARE_POINTS: a mesh of points that are no surfels.
+    FACES: of its mesh. BARE_POINTS: a mesh of points alone that are no surfels; edges
+    show nothing in Cycles either.
     """
 
     SURFELS = auto()
@@ -68,7 +69,7 @@ def content_of(entry: bpy.types.DepsgraphObjectInstance) -> Content:
         elif has_surfels(mesh):
             own = Content.SURFELS
         else:
-            own = Content.BARE_POINTS if len(mesh.vertices) else NOTHING
+            own = Content.BARE_POINTS if len(mesh.vertices) and not len(mesh.edges) else NOTHING
     source = entry.instance_object or object_
     if not shows_as_points(object_.original) or source.type != "MESH" or source.data != object_.data:
         return own

@@ -36,7 +36,7 @@ def passes(planning):
     """No passes; records what the frame has."""
     kept, every = planning.find(finishes), planning.scene.table.kinds.find(counted_finishes)
     if not kept and any(finish.layers for finish in every):
-        planning.skip("finishes", _NO_ROOM)
+        planning.lack("finishes", _NO_ROOM)
         return ()
     if not kept:
         planning.skip("finish", "all materials are plain")
@@ -46,7 +46,7 @@ def passes(planning):
         return ()
     planning.has("FINISH", f"{len(kept)} of {', '.join(_layers(kept))}")
     if len(every) > len(kept):
-        planning.skip("finishes", _TOO_MANY.format(len(every), len(kept)))
+        planning.lack("finishes", _TOO_MANY.format(len(every), len(kept)))
     return ()
 
 

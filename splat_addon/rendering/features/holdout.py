@@ -26,7 +26,7 @@ def _count(planning) -> int:
 def passes(planning):
     cutting = count(lambda instance: instance.is_holdout, planning.scene.table.kinds)
     if cutting and not _count(planning):
-        planning.skip("holdout", f"of {planning.method.name} objects that cut holes are drawn as others are")
+        planning.lack("holdout", f"{planning.method.name} draws objects that cut holes as others")
     elif cutting:
         planning.has("HOLDOUT", f"{cutting} of {len(planning.shown)} instances cut holes")
     if cutting and planning.method.rasterizer == "screen_space":

@@ -25,7 +25,7 @@ def probes(planning):
     if not found:
         planning.skip("reflections", "nothing that is not flat is glossy")
     if without:
-        planning.skip(f"reflections of {without} objects", f"there is room for {MAX_PROBES} probes")
+        planning.lack(f"reflections of {without} objects", _NO_ROOM.format(without))
     return found
 
 
@@ -42,6 +42,12 @@ def sees_screen(planning) -> bool:
         planning.skip(what, "the borders of a panorama's faces would show")
         return False
     return True
+
+
+_NO_ROOM = (
+    f"{{:,}} glossy objects reflect only the world and what the camera sees, as a picture has {MAX_PROBES} probes; "
+    "place sphere light probes that have several objects in their boxes"
+)
 
 
 def side(planning) -> int:

@@ -64,7 +64,7 @@ ARRIVES = {"surfel_lifts": lambda instance: instance.surfels.lift is not None}
 def passes(planning):
     made, without, why_not = planning.find(shadows)
     if without:
-        planning.skip(f"shadows of {without} lights", f"there is room for {MAX_MAPS} maps")
+        planning.lack(f"shadows of {without} lights", _NO_ROOM.format(without))
     if why_not:
         planning.skip("shadows", why_not)
     if made:
@@ -79,6 +79,12 @@ def passes(planning):
             else None
         )
         yield drawn.with_values(run=run, once=_depends_on, each=each)
+
+
+_NO_ROOM = (
+    f"{{:,}} lights cast no shadows, because a picture has {MAX_MAPS} shadow maps, and a point light needs 6, an area "
+    "light 5, a sun or a spot 1; suns and the brightest lamps have them: switch off Shadow of those that need none"
+)
 
 
 def _depends_on(tile, p: Pass) -> tuple:

@@ -65,7 +65,7 @@ def passes(planning):
     if not asked:
         planning.skip("styles", "no material has a ramp or lines of its own")
     elif not found:
-        planning.skip("styles", _TOO_MANY.format(len(asked), MAX_STYLES) if len(asked) > MAX_STYLES else _NO_ROOM)
+        planning.lack("styles", _TOO_MANY.format(len(asked), MAX_STYLES) if len(asked) > MAX_STYLES else _NO_ROOM)
     else:
         planning.has("STYLES", f"{len(found) - 1} beside that of the picture")
         planning.find(table)

@@ -40,7 +40,7 @@ def passes(planning):
         return
     count, why_not = planning.find(layers)
     if why_not:
-        planning.skip("transparency", f"surfels whose opacity is below 1 are drawn opaque: {why_not}")
+        planning.lack("transparency", f"surfels whose opacity is below 1 are drawn opaque: {why_not}")
     elif not count:
         planning.skip("transparent layers", "every surfel is opaque")
     if not count:

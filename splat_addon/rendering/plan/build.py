@@ -80,6 +80,7 @@ def plan(
         found=planning.found,
         features=tuple(planning.features),
         skipped=tuple(planning.skipped),
+        limits=tuple(planning.limits),
     )
     for check in CHECKS:
         check(made)

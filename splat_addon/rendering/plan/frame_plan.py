@@ -34,6 +34,7 @@ class FramePlan:
     choices: (name in paths of shaders, file). margin: pixels drawn around a tile and not kept.
     found: what was decided while planning.
     features: (name, why), of what is present beside passes. skipped: (what, why), of what others would need.
+    limits: the reasons among these that tell users what the picture lacks.
     """
 
     tiles: tuple[tuple[int, int, int, int], ...]
@@ -52,6 +53,7 @@ class FramePlan:
     found: Mapping[Callable[[Planning], object], object]
     features: tuple[tuple[str, str], ...]
     skipped: tuple[tuple[str, str], ...]
+    limits: tuple[str, ...]
 
     def has(self, feature: str) -> bool:
         """Whether a feature is present."""

@@ -50,6 +50,7 @@ class Planning:
         self.surfels, self.polygons = (scene.table.kinds.of(kind) for kind in (Instance, PolygonInstance))
         self.features: list[tuple[str, str]] = []
         self.skipped: list[tuple[str, str]] = []
+        self.limits: list[str] = []
         self._found: dict[Callable[[Planning], object], object] = {}
 
     def find(self, fact: Callable[[Planning], Found]) -> Found:
@@ -70,6 +71,11 @@ class Planning:
     def skip(self, what: str, why: str) -> None:
         """Record what is not needed, and why."""
         self.skipped.append((what, why))
+
+    def lack(self, what: str, why: str) -> None:
+        """Record what the scene asks for and the picture lacks, and why. Users read the second, a sentence."""
+        self.skip(what, why)
+        self.limits.append(why)
 
 
 def count(which: Callable[[Placed], bool], kinds: Kinds) -> int:

@@ -7,10 +7,14 @@ seen by a light are a visibility pass from there).
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+
+import numpy as np
 
 from ..scene import Scene
 from ..scene.camera import Camera
+from ..scene.light import Light
 from ..scene.table import InstanceTable
 from .atlas import ShadowMap, atlas_columns, placed_in_atlas
 from .casters import in_the_way, sees
@@ -28,7 +32,7 @@ from .receivers import (
     used_texels,
 )
 
-#: Maximum number of maps in the atlas; the last lights cast no shadow if there are more.
+#: Maximum number of maps in the atlas; suns have the first, then the brightest lamps, and the others cast no shadow.
 MAX_MAPS = 64
 #: Smaller maps than this are not cheaper.
 LEAST_SIDE = 32
@@ -58,19 +62,37 @@ def shadow_maps(
     for_sun = receivers(scene.table.seen, replace(viewers.sun, lens=None), lights_splats) if suns else None
     for_lamps = [receivers(scene.table.seen, camera, lights_splats) for camera in viewers.lamps] if lamps else []
     finest = max(min(resolution * (FINER_SUN // atlas_columns(suns)), LARGEST_SIDE), resolution)
-    made, without, count = [], 0, 0
-    for number, light in enumerate(scene.lights):
-        if light.casts_shadow:
-            whole = cameras_of(light, casters, for_sun, resolution)
-            own = [c for c in whole if c.is_orthographic or sees(c, corners).any()]
-            if count + len(own) > MAX_MAPS:
-                without += 1
-                continue
-            count += len(own)
-            seen = [one and one.of(light) for one in ([for_sun] if light.kind == "sun" else for_lamps)]
-            most = finest if light.kind == "sun" else resolution
-            made += _needed(number, light, own, most, [one for one in seen if one], casters, len(whole) > 1)
+    chosen, without = _with_room(scene.lights, lambda light: cameras_of(light, casters, for_sun, resolution), corners)
+    made = []
+    for number in sorted(chosen):
+        light, (own, are_faces) = scene.lights[number], chosen[number]
+        seen = [one and one.of(light) for one in ([for_sun] if light.kind == "sun" else for_lamps)]
+        most = finest if light.kind == "sun" else resolution
+        made += _needed(number, light, own, most, [one for one in seen if one], casters, are_faces)
     return placed_in_atlas(made), without
+
+
+def _with_room(
+    lights: Sequence[Light], cameras: Callable[[Light], list[Camera]], corners: np.ndarray
+) -> tuple[dict[int, tuple[list[Camera], bool]], int]:
+    """(number of a light -> its cameras that see casters, and whether they are faces of a cube) of the lights for which
+    there is room, and the number of the others. corners: (n, 8, 3) of the casters, world."""
+    order = sorted((k for k, light in enumerate(lights) if light.casts_shadow), key=lambda k: _rank(lights[k]))
+    found, count = {}, 0
+    for before, number in enumerate(order):
+        whole = cameras(lights[number])
+        own = [c for c in whole if c.is_orthographic or sees(c, corners).any()]
+        # a sun whose shadows are not seen could be seen by a camera that moves
+        count += 1 if lights[number].kind == "sun" else len(own)
+        if count > MAX_MAPS:
+            return found, len(order) - before
+        found[number] = own, len(whole) > 1
+    return found, 0
+
+
+def _rank(light: Light) -> tuple[bool, float]:
+    """Suns come first, which shine everywhere, and the brightest before others."""
+    return light.kind != "sun", -abs(light.energy) * float(np.abs(light.color).max())
 
 
 def _needed(

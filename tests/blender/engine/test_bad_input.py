@@ -229,6 +229,12 @@ def test_meshes_without_faces_are_counted(good, add_mesh, assert_good_is_drawn, 
     assert "(2 times)" in text
 
 
+def test_meshes_of_edges_show_nothing_as_in_cycles_without_a_word(good, add_mesh, assert_good_is_drawn, said):
+    add_mesh("wire", [(0, 0, 0), (1, 0, 0)], []).data.edges.add(1)
+    assert_good_is_drawn()
+    assert "without faces" not in said()
+
+
 def test_point_clouds_are_said_to_be_left_out(good, add_mesh, add_nodes, picture, said):
     def to_points(tree, start, end):
         convert = tree.nodes.new("GeometryNodeMeshToPoints")
