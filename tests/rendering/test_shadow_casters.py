@@ -12,6 +12,7 @@ from splat_addon.rendering import Camera, Instance, Light, Scene, Settings, look
 from splat_addon.rendering.passes.decisions import shadows
 from splat_addon.rendering.shadows import maps
 from splat_addon.rendering.shadows.casters import hull_planes
+from splat_addon.rendering.shadows.hexahedra import places_in_pyramid
 
 SIZE = (64, 48)
 SETTINGS = Settings(method="quad", supersampling=1, outputs=("color",), shadow_resolution=256)
@@ -133,3 +134,21 @@ def test_the_hull_holds_all_that_lies_between_a_lamp_and_what_is_seen(lamp):
     around = rng.uniform(-40, 40, (2000, 3))
     share = np.mean((around @ planes[:, :3].T + planes[:, 3] > 0).all(axis=1))
     assert share < 0.1 and math.isfinite(share)
+
+
+def test_places_in_a_pyramid_hold_all_of_a_body_that_is_there_and_bodies_beyond_have_none():
+    rng, half = np.random.default_rng(5), 1.05
+    bits = np.array([(k >> 2 & 1, k >> 1 & 1, k & 1) for k in range(8)]) * 2.0 - 1
+    middles, axes, reach = rng.normal(0, 3, (200, 1, 3)), rng.normal(0, 0.7, (200, 3, 3)), rng.uniform(0, 0.3, 200)
+    places, count = places_in_pyramid(middles + bits @ axes, half, reach)
+    inside = middles + rng.uniform(-1, 1, (200, 4000, 3)) @ axes
+    # distances to the sides of the pyramid, which is widened by so much
+    x, y, z = (inside / math.hypot(1, half)).transpose(2, 0, 1)
+    is_there = np.maximum(abs(x), abs(y)) + half * z < reach[:, None]
+    for body, is_met, there, every in zip(places, count, is_there, inside, strict=True):
+        assert is_met.any() or not there.any()
+        if there.any():
+            assert (every[there] >= body[is_met].min(axis=0) - 1e-9).all()
+            assert (every[there] <= body[is_met].max(axis=0) + 1e-9).all()
+    # and few are taken to be there that are not
+    assert is_there.any(axis=1).sum() <= count.any(axis=1).sum() <= 1.1 * is_there.any(axis=1).sum() < 150

@@ -21,6 +21,8 @@ EDGES = np.array(
 _RAYS = np.array([(x, y, -1.0) for x in (-1, 1) for y in (-1, 1)])
 #: Normals of its sides that point inward.
 _SIDES = np.array([(1, 0, -1.0), (-1, 0, -1.0), (0, 1, -1.0), (0, -1, -1.0)])
+#: Both ends of each edge and of each ray.
+_PLACES = 2 * (len(EDGES) + len(_RAYS))
 
 
 def planes(normals: np.ndarray, through: np.ndarray, middle: np.ndarray) -> np.ndarray:
@@ -49,14 +51,25 @@ def places_in_pyramid(corners: np.ndarray, half: float, reach: np.ndarray) -> tu
     back[:, 0, 2] = reach * np.hypot(1, half) / half
     moved = corners - back
     sides = (moved * (1, 1, half)) @ _SIDES.T
+    # of many bodies, most are beyond one side
+    near = np.flatnonzero((sides >= 0).any(axis=1).all(axis=1))
+    places, are_places = np.zeros((len(corners), _PLACES, 3)), np.zeros((len(corners), _PLACES), bool)
+    found, are_places[near] = _met(moved[near], sides[near], half, reach[near])
+    places[near] = found + back[near]
+    return places, are_places
+
+
+def _met(moved: np.ndarray, sides: np.ndarray, half: float, reach: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The same of bodies in the view of the widened pyramid, from the distances of their corners on the inner side of
+    its sides."""
     start, end = EDGES[:, 0], EDGES[:, 1]
     of_edges, are_edges = _clipped(moved[:, start], moved[:, end], sides[:, start], sides[:, end])
     rays = _RAYS * (half, half, 1.0) * np.maximum(-moved[..., 2].min(axis=1), 0.0)[:, None, None]
     faces = face_planes(moved)
-    begins = np.broadcast_to((faces[..., 3] + reach[:, None])[:, None], (len(corners), 4, 6))
+    begins = np.broadcast_to((faces[..., 3] + reach[:, None])[:, None], (len(moved), 4, 6))
     ends = begins + rays @ faces[..., :3].transpose(0, 2, 1)
     of_rays, are_rays = _clipped(np.zeros_like(rays), rays, begins, ends)
-    return np.concatenate([of_edges, of_rays], axis=1) + back, np.concatenate([are_edges, are_rays], axis=1)
+    return np.concatenate([of_edges, of_rays], axis=1), np.concatenate([are_edges, are_rays], axis=1)
 
 
 def _clipped(start, end, start_inside, end_inside) -> tuple[np.ndarray, np.ndarray]:

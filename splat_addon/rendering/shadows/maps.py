@@ -109,12 +109,14 @@ def _needed(
     while 2 * side <= most and are_larger_than_pixels(side, needed):
         side *= 2
     found = []
+    is_smaller = side < resolution
     cameras = [resized(camera, side) for camera in cameras]
     if light.kind == "sun":
         casters = brought_down(casters, cameras[0])
-    for camera in cameras:
+    for camera, look in zip(cameras, looks, strict=True):
         spread = spread_of(light, camera)
-        if one := together([looked_up(camera, one, spread) for one in seen]):
+        # a wider window shows more
+        if one := together([looked_up(camera, one, spread) for one in seen]) if is_smaller else look:
             corners = casters.world_corners
             block = sees(camera, corners) & in_the_way(light, _texel_of(camera), seen, spread, corners)
             if block.any():
@@ -124,7 +126,7 @@ def _needed(
                         camera,
                         place=(0, 0),
                         is_face=are_faces,
-                        is_smaller=side < resolution,
+                        is_smaller=is_smaller,
                         used=used_texels(camera, one),
                         casters=casters.taken(block),
                         around=casters,
