@@ -96,22 +96,34 @@ def test_a_light_whose_receivers_are_not_seen_has_no_map():
     assert plan(seen, CAMERAS["near"], SETTINGS).find(shadows).maps
 
 
-def test_whether_there_is_room_for_a_light_does_not_depend_on_the_camera():
+def test_whether_there_is_room_for_a_light_does_not_depend_on_the_camera(monkeypatch):
     """Otherwise its shadow would come and go while the camera moves."""
     lamp = replace(LIGHTS["point"], position=(0.5, 0.2, 0.0))
-    scene = replace(balls(lamp), lights=(lamp,) * 12)
+    scene = replace(balls(lamp), lights=(lamp,) * 7)
+    monkeypatch.setattr(maps, "MAX_MAPS", 32)
     for camera in CAMERAS.values():
         made = plan(scene, camera, SETTINGS)
         assert "shadows of 2 lights" in dict(made.skipped)
         assert any(said.startswith("2 lights cast no shadows") for said in made.limits)
 
 
-def test_suns_and_the_brightest_lamps_have_room_before_others():
-    lamps = [replace(LIGHTS["point"], energy=900 + 10 * k, position=(0.1 * k, 0, 0)) for k in range(12)]
+def test_suns_and_the_brightest_lamps_have_room_before_others(monkeypatch):
+    monkeypatch.setattr(maps, "MAX_MAPS", 32)
+    lamps = [replace(LIGHTS["point"], energy=900 + 10 * k, position=(0.1 * k, 0, 0)) for k in range(7)]
     scene = replace(balls(lamps[0]), lights=(*lamps, LIGHTS["sun"]))
     made = plan(scene, CAMERAS["near"], SETTINGS)
-    assert {one.light for one in made.find(shadows).maps} == {*range(2, 13)}
+    assert {one.light for one in made.find(shadows).maps} == {*range(2, len(scene.lights))}
     assert made.find(shadows).without == 2
+
+
+@pytest.mark.parametrize(("lamps", "side"), [(12, 256), (13, 128)])
+def test_the_maps_of_many_lamps_share_the_texels_of_fewer(lamps, side):
+    """Five faces of each see casters."""
+    scene = replace(balls(LIGHTS["sun"]), lights=(LIGHTS["sun"],) + (LIGHTS["point"],) * lamps)
+    camera = replace(CAMERAS["near"], size=(640, 480))
+    found = plan(scene, camera, SETTINGS).find(shadows).maps
+    assert max(one.camera.size[0] for one in found if one.light) == side
+    assert max(one.camera.size[0] for one in found if not one.light) >= 256
 
 
 @pytest.mark.parametrize("lamp", [(0, 0, 9, 1), (3, 1, 0.5, 1), (0, 0, 0, 1), (1, -2, 0.5, 0), (-30, 2, 5, 1)])

@@ -97,9 +97,11 @@ def _beside(made: ShadowMap, maps, depths) -> np.ndarray:
     texels = np.zeros((4, 3, 4))
     own = made.camera.matrix_world[:3, :3]
     for other, depth in zip(maps, depths, strict=True):
+        if other.light != made.light:
+            continue
         turn = other.camera.matrix_world[:3, :3].T @ own
         sides = turn[2] @ np.array([(1, -1, 0, 0), (0, 0, 1, -1), (0, 0, 0, 0)])
-        if other.light == made.light and sides.max() > 0.5:
+        if sides.max() > 0.5:
             texels[sides.argmax(), :, :3] = turn
             texels[sides.argmax(), :, 3] = *other.place, depth
     return texels.reshape(12, 4)

@@ -33,7 +33,9 @@ from .receivers import (
 )
 
 #: Maximum number of maps in the atlas; suns have the first, then the brightest lamps, and the others cast no shadow.
-MAX_MAPS = 64
+MAX_MAPS = 256
+#: Of more maps than this, those of lamps have at most half the texels along a side: so many full ones fill the atlas.
+FULL_MAPS = 64
 #: Smaller maps than this are not cheaper.
 LEAST_SIDE = 32
 #: The map of a sun covers all that is visible, so where its texels would be larger than pixels, it has up to this many
@@ -63,11 +65,15 @@ def shadow_maps(
     for_lamps = [receivers(scene.table.seen, camera, lights_splats) for camera in viewers.lamps] if lamps else []
     finest = max(min(resolution * (FINER_SUN // atlas_columns(suns)), LARGEST_SIDE), resolution)
     chosen, without = _with_room(scene.lights, lambda light: cameras_of(light, casters, for_sun, resolution), corners)
+    count = suns + sum(len(own) for k, (own, _) in chosen.items() if scene.lights[k].kind != "sun")
+    of_lamp = resolution if count <= FULL_MAPS else resolution // 2
     made = []
     for number in sorted(chosen):
         light, (own, are_faces) = scene.lights[number], chosen[number]
         seen = [one and one.of(light) for one in ([for_sun] if light.kind == "sun" else for_lamps)]
-        most = finest if light.kind == "sun" else resolution
+        most = finest if light.kind == "sun" else of_lamp
+        if light.kind != "sun":
+            own = [replace(camera, size=(most, most)) for camera in own]
         made += _needed(number, light, own, most, [one for one in seen if one], casters, are_faces)
     return placed_in_atlas(made), without
 
