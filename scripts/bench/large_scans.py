@@ -116,14 +116,14 @@ class Parts:
             yield {"positions": points.positions - _CORNER, "colors": points.colors}
 
 
-def converted(arrays: dict[str, np.ndarray], own: int, told) -> Surfels:
+def converted(arrays: dict[str, np.ndarray], own: int, told) -> tuple[Surfels, np.ndarray]:
     surfels, report = surfels_from_points(
         arrays["positions"], colors=arrays["colors"], viewpoint=(0.0, 0.0, 1e6), progress=told
     )
     mine = report.kept < own
     fields = {name: values[mine] for name, values in surfels.arrays().items()}
     fields["positions"] = (fields["positions"] + surfels.origin).astype(np.float32)
-    return Surfels(origin=_CORNER, **fields)
+    return Surfels(origin=_CORNER, **fields), report.kept[mine]
 
 
 def write_scan(file: Path, count: int) -> None:

@@ -6,8 +6,8 @@ becomes one surfel each (`pieces`) that keeps its area (`loose`). Every merged s
 the surfels it replaces (`bounds`), and ends at their clip lines (`merged_lines`). What lies around it makes it sharper,
 and its bounds larger at borders (`surroundings`). Runs of neighbours in a level are *blocks*, each with a box and a
 cone of normals (`blocks`), from which a view selects (`cuts`). When surfels move, the tree stays, and is fitted to them
-(`refitting`). Surfels of extreme sizes or places never merge (`extremes`). Those of small
-objects may do without lines (`lineless`).
+(`refitting`). Numbers that the surfels have beside their fields have means too (`standing_for`). Surfels of extreme
+sizes or places never merge (`extremes`). Those of small objects may do without lines (`lineless`).
 """
 
 from .building import Hierarchy, Told, build_hierarchy
@@ -15,6 +15,7 @@ from .cuts import Sight, Split, are_facing, cut_blocks, entries_of
 from .extremes import has_extremes
 from .lineless import without_lines
 from .refitting import refit_hierarchy
+from .standing_for import most_common, rounded_means
 
 __all__ = [
     "Hierarchy",
@@ -26,6 +27,8 @@ __all__ = [
     "cut_blocks",
     "entries_of",
     "has_extremes",
+    "most_common",
     "refit_hierarchy",
+    "rounded_means",
     "without_lines",
 ]

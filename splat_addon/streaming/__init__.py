@@ -11,6 +11,7 @@ read, are replaced by their parents. `checking` reads a whole file and compares 
 
 from .block_file import BlockFile
 from .checking import check, described
+from .layout import SCAN_COLUMNS, as_bytes, measured
 from .own_files import id_of, own_file
 from .point_writing import write_points
 from .stream import Stream, Unreadable
@@ -18,13 +19,16 @@ from .writing import PORTION, WritingCancelled, write_blocks
 
 __all__ = [
     "PORTION",
+    "SCAN_COLUMNS",
     "BlockFile",
     "Stream",
     "Unreadable",
     "WritingCancelled",
+    "as_bytes",
     "check",
     "described",
     "id_of",
+    "measured",
     "own_file",
     "write_blocks",
     "write_points",

@@ -22,7 +22,8 @@ from .layout import COLUMNS, PAGE, SUM, SUMS
 
 class BlockFile:
     """id: of what was written, or empty. count: number of surfels. rows: number of rows, merged ones included. kind:
-    type of a row. size: number of blocks. roots: number of those without a parent.
+    type of a row. size: number of blocks. roots: number of those without a parent. scan: of `SCAN_COLUMNS` that it has
+    -> the numbers that the bytes 0 and 255 stand for.
 
     Raises OSError if the file cannot be read, ValueError with a sentence if it has another format or version, or is cut
     off or damaged.
@@ -39,6 +40,7 @@ class BlockFile:
             self.id, self.count, self.rows = directory.id, directory.surfels, directory.rows
             self.size, self.roots = directory.blocks, directory.roots
             self.origin, self.kind = directory.origin, directory.kind
+            self.scan = directory.scan
             self.is_solid, self.is_transparent = directory.is_solid, directory.is_transparent
             self._offsets, self._failure = directory.offsets, ""
             self._sums = {name: self._read_sums(name, checksum) for name, checksum in directory.sums.items()}

@@ -11,7 +11,20 @@ from typing import BinaryIO
 import numpy as np
 
 from ..surfels import LAYOUT
-from .layout import COLUMNS, FIELDS, HEAD, MAGIC, PAGE, SUM, SUMS, UNCHECKED_VERSION, VERSION, row_type
+from .layout import (
+    COLUMNS,
+    FIELDS,
+    HEAD,
+    MAGIC,
+    PAGE,
+    SCAN_COLUMNS,
+    SCAN_VERSION,
+    SUM,
+    SUMS,
+    UNCHECKED_VERSION,
+    VERSION,
+    row_type,
+)
 
 #: The longest directory that is read; a written one has some 1,500 bytes.
 _LONGEST = 1 << 20
@@ -26,7 +39,8 @@ class Directory:
 
     id: of what was written, or empty. surfels, rows, blocks, roots: their numbers. origin: (3,) float64. kind: type of
     a row. offsets: array -> where it begins; all arrays end before the directory. sums: "row_sums" and "block_sums" ->
-    the CRC-32 of the array; empty for a file without checksums.
+    the CRC-32 of the array; empty for a file without checksums. scan: of `SCAN_COLUMNS` that it has -> the numbers that
+    the bytes 0 and 255 stand for.
     """
 
     id: str
@@ -40,6 +54,7 @@ class Directory:
     kind: np.dtype
     offsets: dict[str, int]
     sums: dict[str, int]
+    scan: dict[str, tuple[float, float]]
 
 
 def read_directory(stream: BinaryIO, size: int, name: str) -> Directory:
@@ -52,10 +67,10 @@ def read_directory(stream: BinaryIO, size: int, name: str) -> Directory:
     if len(head) < HEAD.size or not head.startswith(MAGIC):
         raise ValueError(f"{name} is not a file of surfels in blocks; store surfels in one first.")
     _, version, checksum, offset, length = HEAD.unpack(head)
-    if version not in (UNCHECKED_VERSION, VERSION):
+    if version not in (UNCHECKED_VERSION, VERSION, SCAN_VERSION):
         raise ValueError(
-            f"{name} has version {version} of the format, and this extension reads versions up to {VERSION}; store "
-            "its surfels again."
+            f"{name} has version {version} of the format, and this extension reads versions up to {SCAN_VERSION}; "
+            "store its surfels again."
         )
     if offset + length != size:
         raise ValueError(
@@ -84,7 +99,8 @@ def _directory(values, end: int, version: int) -> Directory:
     """A checked directory. end: where the arrays end, bytes. Raises `_Wrong`."""
     values = _of_type(values, dict, "the directory")
     arrays = _of_type(values.get("arrays"), dict, "arrays")
-    kind = _row_type(values.get("fields"))
+    scan = _scan(values.get("scan")) if version == SCAN_VERSION else {}
+    kind = _row_type(values.get("fields"), scan)
     rows = _count(_entry(arrays, "rows").get("count"), 1, end, "the number of rows")
     shape = _of_type(_entry(arrays, "first").get("shape"), list, "the shape of first")
     blocks = _count(shape[0] if shape else None, 1, end, "the number of blocks")
@@ -105,13 +121,14 @@ def _directory(values, end: int, version: int) -> Directory:
         rows,
         blocks,
         _count(values.get("roots"), 1, blocks, "the number of roots"),
-        _origin(values.get("origin")),
+        _numbers(values.get("origin"), 3, "the origin"),
         _of_type(values.get("is_solid"), bool, "is_solid"),
         # the first files had opaque surfels only, and did not say so
         _of_type(values.get("is_transparent", False), bool, "is_transparent"),
         kind,
         {name: _offset(arrays, name, size, end) for name, size in sizes.items()},
         sums,
+        scan,
     )
 
 
@@ -157,19 +174,29 @@ def _offset(arrays: dict, name: str, size: int, end: int) -> int:
     return offset
 
 
-def _row_type(fields) -> np.dtype:
+def _row_type(fields, scan: dict) -> np.dtype:
     fields = _of_type(fields, dict, "fields")
     for name, columns in fields.items():
         if name not in FIELDS or type(columns) is not int or columns != FIELDS[name][0]:
             raise _Wrong(f"it has a field {_short(name)} with {_short(columns)} columns, which surfels lack")
     if missing := LAYOUT.keys() - fields.keys():
         raise _Wrong(f"it lacks the field {min(missing)}")
-    return row_type(fields)
+    return row_type([*fields, *scan])
 
 
-def _origin(origin) -> np.ndarray:
-    numbers = _of_type(origin, list, "the origin")
+def _scan(scan) -> dict[str, tuple[float, float]]:
+    scan = _of_type(scan, dict, "scan")
+    if unknown := scan.keys() - set(SCAN_COLUMNS):
+        raise _Wrong(f"it has a column {_short(min(unknown))}, which scans lack")
+    ranges = {name: tuple(_numbers(ends, 2, f"the range of {name}").tolist()) for name, ends in scan.items()}
+    if wrong := [name for name, (low, high) in ranges.items() if low > high]:
+        raise _Wrong(f"the range of {wrong[0]} is {_short(scan[wrong[0]])} in its directory")
+    return ranges
+
+
+def _numbers(values, count: int, what: str) -> np.ndarray:
+    numbers = _of_type(values, list, what)
     # a whole number may be too large for a float, which is as bad as infinite
-    if len(numbers) != 3 or not all(type(n) in (int, float) and -_LARGEST <= n <= _LARGEST for n in numbers):
-        raise _Wrong(f"the origin is {_short(numbers)} in its directory")
+    if len(numbers) != count or not all(type(n) in (int, float) and -_LARGEST <= n <= _LARGEST for n in numbers):
+        raise _Wrong(f"{what} is {_short(numbers)} in its directory")
     return np.array(numbers, np.float64)

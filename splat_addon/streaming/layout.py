@@ -17,6 +17,10 @@ and last_child its run of blocks, both with at most 1,024 entries; children come
 are the roots. Blocks without children hold the surfels themselves, and all of these together every surfel once, bit by
 bit as it was written.
 
+Version 3 is written for scans only, and has "scan": {"intensity": [low, high], ...} in its directory: numbers of
+`SCAN_COLUMNS`, in one byte each, which follow the fields in each row. Bytes from 0 to 255 stand for low to high; what
+lies beyond has the byte of the nearer end.
+
 Rows and blocks are read in *pages* of 1,024. The arrays row_sums and block_sums (uint32) have the CRC-32 of each page;
 that of a page of blocks goes over its part of the nine columns, one after another. Each of the two has its own CRC-32
 in the directory, as "checksum".
@@ -41,8 +45,8 @@ from ..surfels import LAYOUT, OPTIONAL_LAYOUT, Surfels, concatenate, field_value
 
 SUFFIX = ".surfelblocks"
 VERSION = 2
-#: The version without checksums, which is read too.
-UNCHECKED_VERSION = 1
+#: The version without checksums, which is read too, and that of files with numbers of scans.
+UNCHECKED_VERSION, SCAN_VERSION = 1, 3
 ALIGNMENT = 64
 #: Rows or blocks of a page, the least that is read: some 70 kB of rows. A block spans at most two pages of rows, and
 #: its children at most two pages of blocks.
@@ -56,6 +60,10 @@ FIELDS = {
     for name, (columns, kind, *_) in {**LAYOUT, **OPTIONAL_LAYOUT}.items()
 }
 
+#: Numbers of scans that a row may have beside the fields, a byte each.
+SCAN_COLUMNS = ("intensity", "classification")
+_BYTE = np.dtype("u1")
+
 #: Columns of `Blocks` in the file -> their number of columns and their type.
 COLUMNS = {
     **dict.fromkeys(("first", "last", "first_child", "last_child"), (1, np.dtype("<i8"))),
@@ -68,16 +76,16 @@ SUMS, SUM = ("row_sums", "block_sums"), np.dtype("<u4")
 
 
 def row_type(names) -> np.dtype:
-    """The type of a row that has these fields of `Surfels`, in their order there."""
+    """The type of a row that has these fields of `Surfels`, in their order there, then these of `SCAN_COLUMNS`."""
     columns = ((name, kind, (count,) if count > 1 else ()) for name, (count, kind) in FIELDS.items() if name in names)
-    return np.dtype(list(columns))
+    return np.dtype([*columns, *((name, _BYTE) for name in SCAN_COLUMNS if name in names)])
 
 
-def as_rows(surfels: Surfels, kind: np.dtype) -> np.ndarray:
-    """(N,) rows; fields that the surfels lack have their defaults."""
+def as_rows(surfels: Surfels, kind: np.dtype, scan: dict[str, np.ndarray] | None = None) -> np.ndarray:
+    """(N,) rows; fields that the surfels lack have their defaults. scan: (N,) uint8 of `SCAN_COLUMNS`."""
     rows = np.empty(len(surfels), kind)
     for name in kind.names:
-        rows[name] = field_values(surfels, name)
+        rows[name] = scan[name] if name in SCAN_COLUMNS else field_values(surfels, name)
     return rows
 
 
@@ -100,11 +108,12 @@ def align(stream: BinaryIO) -> int:
 
 def finish(stream: BinaryIO, directory: dict) -> None:
     """Write the directory, and the head in front of everything."""
+    version = SCAN_VERSION if "scan" in directory else VERSION
     text = json.dumps(directory).encode("ascii")
     offset = align(stream)
     stream.write(text)
     stream.seek(0)
-    stream.write(HEAD.pack(MAGIC, VERSION, zlib.crc32(text), offset, len(text)))
+    stream.write(HEAD.pack(MAGIC, version, zlib.crc32(text), offset, len(text)))
 
 
 class PageSums:
@@ -136,6 +145,23 @@ class PageSums:
         return {"offset": offset, "type": SUM.str, "shape": [len(sums)], "checksum": zlib.crc32(sums.data)}
 
 
-def joined_rows(surfels: Surfels, nodes: Surfels, kind: np.dtype) -> np.ndarray:
-    """(N + M,) rows of surfels, then of merged ones."""
-    return as_rows(concatenate([surfels, nodes]), kind)
+def joined_rows(surfels: Surfels, nodes: Surfels, kind: np.dtype, scan: dict[str, np.ndarray]) -> np.ndarray:
+    """(N + M,) rows of surfels, then of merged ones. scan: (N + M,) uint8 of `SCAN_COLUMNS`."""
+    return as_rows(concatenate([surfels, nodes]), kind, scan)
+
+
+def parted(fields: dict[str, np.ndarray]) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
+    """Columns of rows: the fields of `Surfels`, and those of `SCAN_COLUMNS`."""
+    scan = {name: fields[name] for name in SCAN_COLUMNS if name in fields}
+    return {name: column for name, column in fields.items() if name not in scan}, scan
+
+
+def measured(scan: np.ndarray, low: float, high: float) -> np.ndarray:
+    """(N,) float64 numbers that (N,) bytes stand for."""
+    return low + scan * ((high - low) / 255)
+
+
+def as_bytes(values: np.ndarray, low: float, high: float) -> np.ndarray:
+    """(N,) uint8 that stand for finite numbers, those beyond low and high for these."""
+    share = (np.clip(values, low, high) - low) / (high - low if high > low else 1.0)
+    return np.rint(255 * share).astype(np.uint8)

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from hashlib import blake2b
@@ -22,7 +22,7 @@ from ..primaries import recolored
 from ..surfels import Surfels, are_usable, portions, prepared
 from .block_file import BlockFile
 from .descent import descend
-from .layout import PAGE
+from .layout import PAGE, parted
 from .pages import AT_ONCE, Pages, Readable
 from .table import Table
 
@@ -36,11 +36,20 @@ class Gathered:
 
     unmerged: number of parts without merged surfels, which are the first. Those that wait for larger cells are in the
         others.
+    scan: of `SCAN_COLUMNS` that the file has, (N,) bytes of the surfels.
     """
 
     surfels: Surfels
     parts: tuple[Surfels, ...]
     unmerged: int
+    scan: dict[str, np.ndarray]
+
+    def scan_of_parts(self) -> Iterator[dict[str, np.ndarray]]:
+        """The bytes of each part."""
+        first = 0
+        for part in self.parts:
+            yield {name: column[first : first + len(part)] for name, column in self.scan.items()}
+            first += len(part)
 
 
 class Seen(NamedTuple):
@@ -132,7 +141,7 @@ class Stream:
         missing = pages.missing(first, last)
         for start in range(0, len(missing), AT_ONCE):
             pages.fetch(missing[start : start + AT_ONCE])
-        fields = pages.gathered(first, last) if not pages.are_lost(first, last).any() else {}
+        fields = parted(pages.gathered(first, last))[0] if not pages.are_lost(first, last).any() else {}
         if not fields or not are_usable(fields).all():
             raise Unreadable(self.file.fault())
         return Surfels(origin=self.file.origin, is_solid=self.file.is_solid, **fields)
@@ -213,7 +222,7 @@ class Stream:
             drawn = drawn[np.argsort(is_merged, kind="stable")]
             first, last = blocks.first[drawn], blocks.last[drawn]
             own = int((last - first)[: np.count_nonzero(~is_merged)].sum())
-            fields = self.pages.gathered(first, last)
+            fields, scan = parted(self.pages.gathered(first, last))
             try:
                 surfels = Surfels(origin=self.file.origin, is_solid=self.file.is_solid, **fields)
             except ValueError:
@@ -226,7 +235,7 @@ class Stream:
             if self.file.is_transparent:
                 # all of them, because splats blend with those of the same layer only
                 surfels, *parts = (some.as_transparent() for some in (surfels, *parts))
-            gathered = self._same[key] = Gathered(surfels, tuple(parts), len(finest))
+            gathered = self._same[key] = Gathered(surfels, tuple(parts), len(finest), scan)
         return gathered
 
     def close(self) -> None:

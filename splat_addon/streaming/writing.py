@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
-from typing import BinaryIO
+from typing import BinaryIO, NamedTuple
 
 import numpy as np
 
@@ -64,11 +64,20 @@ def write_blocks(
         return file.write(merged, survey.kind, survey.origin, survey.is_solid)
 
 
-def _merged(portions: Iterable[np.ndarray], survey: Survey, told) -> Iterator[tuple[Surfels, Hierarchy]]:
+class Merged(NamedTuple):
+    """A portion on its way to a file. scan: (N + M,) uint8 of `SCAN_COLUMNS`, of N surfels, then of M merged ones."""
+
+    surfels: Surfels
+    hierarchy: Hierarchy
+    scan: dict[str, np.ndarray]
+
+
+def _merged(portions: Iterable[np.ndarray], survey: Survey, told) -> Iterator[Merged]:
     done = 0
     for rows in portions:
         surfels = as_surfels(rows, survey.origin, survey.is_solid)
-        yield surfels, build_hierarchy(surfels, partial(_tell, told, done, len(surfels)), is_portion=True)
+        hierarchy = build_hierarchy(surfels, partial(_tell, told, done, len(surfels)), is_portion=True)
+        yield Merged(surfels, hierarchy, {})
         done += len(surfels)
         told(done)
 
@@ -81,12 +90,18 @@ class NewFile:
         self.scratch.mkdir()
 
     def write(
-        self, portions: Iterable[tuple[Surfels, Hierarchy]], kind: np.dtype, origin: np.ndarray, is_solid: bool
+        self,
+        portions: Iterable[Merged],
+        kind: np.dtype,
+        origin: np.ndarray,
+        is_solid: bool,
+        scan: dict[str, tuple[float, float]] | None = None,
     ) -> int:
         """Write portions of neighbours with their hierarchies; returns how many surfels there are. All have this (3,)
-        origin; kind: the type of a row. Raises ValueError if there are none."""
+        origin; kind: the type of a row. scan: as of `BlockFile`. Raises ValueError if there are none."""
         with open(self._path, "wb") as stream:
-            self._count = _write(stream, portions, kind, origin, is_solid, self.scratch)
+            facts = {"origin": origin.tolist(), "is_solid": is_solid, **({"scan": scan} if scan else {})}
+            self._count = _write(stream, portions, kind, facts, self.scratch)
         return self._count
 
     def check(self, file: Path) -> None:
@@ -104,13 +119,13 @@ def new_file(path: str | os.PathLike) -> Iterator[NewFile]:
         yield made[0]
 
 
-def _write(stream: BinaryIO, portions, kind: np.dtype, origin: np.ndarray, is_solid: bool, folder: Path) -> int:
+def _write(stream: BinaryIO, portions: Iterable[Merged], kind: np.dtype, facts: dict, folder: Path) -> int:
     begin(stream)
     tables, sums, done, written, is_transparent = _Tables(folder), PageSums(), 0, 0, False
     start = align(stream)
     sums.begin(kind.itemsize)
-    for surfels, hierarchy in portions:
-        rows = joined_rows(surfels, hierarchy.nodes, kind)[hierarchy.entries]
+    for surfels, hierarchy, scan in portions:
+        rows = joined_rows(surfels, hierarchy.nodes, kind, scan)[hierarchy.entries]
         _add(stream, sums, rows)
         tables.add(hierarchy.blocks, rows, written)
         written += len(rows)
@@ -128,11 +143,10 @@ def _write(stream: BinaryIO, portions, kind: np.dtype, origin: np.ndarray, is_so
         {
             "id": os.urandom(16).hex(),
             "surfels": done,
-            "origin": origin.tolist(),
-            "is_solid": is_solid,
+            **facts,
             "is_transparent": is_transparent,
             "roots": tables.roots,
-            "fields": {name: FIELDS[name][0] for name in kind.names},
+            "fields": {name: FIELDS[name][0] for name in kind.names if name in FIELDS},
             "arrays": arrays,
         },
     )

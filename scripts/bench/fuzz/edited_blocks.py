@@ -8,7 +8,7 @@ import zlib
 
 import numpy as np
 
-from splat_addon.streaming.layout import COLUMNS, HEAD, MAGIC, PAGE, SUM, VERSION, row_type
+from splat_addon.streaming.layout import COLUMNS, HEAD, MAGIC, PAGE, SUM, UNCHECKED_VERSION, row_type
 
 
 class EditedBlocks:
@@ -17,10 +17,11 @@ class EditedBlocks:
 
     def __init__(self, data: bytes):
         self._data = bytearray(data)
-        _, _, _, self._end, length = HEAD.unpack_from(data)
+        _, self._version, _, self._end, length = HEAD.unpack_from(data)
         self.directory = json.loads(data[self._end : self._end + length])
         arrays = self.directory["arrays"]
-        kinds = {"rows": row_type(self.directory["fields"]), **{name: kind for name, (_, kind) in COLUMNS.items()}}
+        rows = row_type([*self.directory["fields"], *self.directory.get("scan", ())])
+        kinds = {"rows": rows, **{name: kind for name, (_, kind) in COLUMNS.items()}}
         shapes = {name: arrays[name].get("shape", [arrays[name].get("count")]) for name in kinds}
         self.arrays = {
             name: np.frombuffer(self._data, kind, int(np.prod(shapes[name])), arrays[name]["offset"]).reshape(
@@ -29,9 +30,10 @@ class EditedBlocks:
             for name, kind in kinds.items()
         }
 
-    def packed(self, version: int = VERSION, are_sums_right: bool = True, text: bytes | None = None) -> bytes:
-        """The file's bytes. text: instead of the directory."""
-        if are_sums_right and version == VERSION:
+    def packed(self, version: int = 0, are_sums_right: bool = True, text: bytes | None = None) -> bytes:
+        """The file's bytes. version: 0 for the one that it had. text: instead of the directory."""
+        version = version or self._version
+        if are_sums_right and version != UNCHECKED_VERSION:
             self._sum("row_sums", [self.arrays["rows"]])
             self._sum("block_sums", [self.arrays[name] for name in COLUMNS])
         text = json.dumps(self.directory).encode() if text is None else text

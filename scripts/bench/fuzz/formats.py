@@ -37,7 +37,7 @@ from splat_addon.sampling import (
     sample_block,
     write_blocks,
 )
-from splat_addon.streaming import Stream, Unreadable, check, described
+from splat_addon.streaming import SCAN_COLUMNS, Stream, Unreadable, check, described, write_points
 from splat_addon.streaming import write_blocks as write_block_file
 from splat_addon.surfels import Surfels, portions
 
@@ -57,7 +57,7 @@ VIEWS = (sight((0, 0, 40), 3.0), sight((0, 0, 2), 0.3, (1, 0, 0, 0)), sight((0, 
 
 
 class BlockFiles:
-    """Files of blocks of one and of several portions, with and without optional fields and checksums."""
+    """Files of blocks of one and of several portions, with and without optional fields, numbers of scans, checksums."""
 
     suffix = ".surfelblocks"
 
@@ -65,19 +65,31 @@ class BlockFiles:
         self._path = folder / f"a{self.suffix}"
         extra = {"roughness": np.linspace(0, 1, 900), "clip_line": np.ones((900, 2), np.int16), "is_solid": True}
         self._sound = [self._written(ball(900, **extra), 900), self._written(ball(2500), 700)]
-        self._sound.append(self._written(ball(13_000), 4000))
+        self._sound += [self._written(ball(13_000), 4000), self._scanned(ball(2500), 700)]
 
     def _written(self, surfels: Surfels, portion: int) -> bytes:
         write_block_file(self._path, portions(surfels, 2000), portion=portion)
         return self._path.read_bytes()
 
+    def _scanned(self, surfels: Surfels, portion: int) -> bytes:
+        points = {"positions": surfels.positions.astype(float), "row": np.arange(len(surfels))}
+        points |= {name: points["row"].astype(np.uint8) for name in SCAN_COLUMNS}
+
+        def convert(arrays, own: int, told) -> tuple[Surfels, np.ndarray]:
+            return surfels.take(arrays["row"][:own]), np.arange(own)
+
+        scan = {"intensity": (-3.0, 8.5), "classification": (0.0, 255.0)}
+        given = {"origin": surfels.origin, "neighbours": 4, "scan": scan, "portion": portion}
+        write_points(self._path, [points], points["positions"], len(surfels), convert, **given)
+        return self._path.read_bytes()
+
     def damaged(self, random) -> bytes:
-        sound = self._sound[random.choice(3, p=(0.4, 0.3, 0.3))]
+        sound = self._sound[random.choice(4, p=(0.3, 0.2, 0.2, 0.3))]
         kind = random.random()
         if kind < 0.25:
             return changed_bytes(random, sound)
         parts = EditedBlocks(sound)
-        version = 1 if random.random() < 0.3 else 2
+        version = 1 if random.random() < 0.3 else 0
         if kind < 0.6:
             parts.directory = changed_json(random, parts.directory)
         if kind > 0.5:

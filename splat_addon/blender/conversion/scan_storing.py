@@ -11,7 +11,7 @@ import numpy as np
 from ...interchange import PointPieces, Points
 from ...interchange.scan_colors import GREYS, RAMP, ends_of, of_classes, on_ramp
 from ...sampling import surfels_from_points
-from ...streaming import write_points
+from ...streaming import SCAN_COLUMNS, as_bytes, write_points
 from ...surfels import Surfels
 from ..scan_color_settings import ATTRIBUTE_OF
 
@@ -52,6 +52,10 @@ class StoredScan:
             low, high = places.min(axis=0), places.max(axis=0)
             self._eye = (low + high) / 2 + (0, 0, _HIGH * max(float((high - low).max()), 1e-6))
         self._paint = self._painter(color_by)
+        there = {name: sample.attributes[name] for name in SCAN_COLUMNS if name in sample.attributes}
+        # the bytes of classes are their numbers, and those of intensity have the range of automatic colours
+        self._scan = {n: (0.0, 255.0) if n == "classification" else ends_of(of) for n, of in there.items()}
+        self._unknown = dict.fromkeys(self._scan, 0)
 
     def write(self, path: str | os.PathLike, progress: Callable[[float, str], bool]) -> int:
         """Write the file; returns the number of surfels. Raises as `streaming.write_points` and
@@ -66,10 +70,14 @@ class StoredScan:
             origin=self._middle + self._offset,
             neighbours=self._keywords["neighbours"],
             has_clip_lines=self._keywords["crease_angle"] is not None,
+            scan=self._scan,
             progress=progress,
         )
         if left_out := self._left_out + nowhere:
             self.notes.append(f"Skipped {left_out:,} points that stand alone, repeat another or have no place")
+        for name, unknown in self._unknown.items():
+            if unknown:
+                self.notes.append(f"Took 0 as the {name} of {unknown:,} points that have none")
         return count
 
     def _parts(self) -> Iterator[dict[str, np.ndarray]]:
@@ -84,7 +92,19 @@ class StoredScan:
                 part["colors"] = colors
             if self._scanners:
                 part["scanners"] = self._scanners_of(points)
+            for name in self._scan:
+                part[name] = self._bytes(points, name)
             yield part
+
+    def _bytes(self, points: Points, name: str) -> np.ndarray:
+        """(N,) uint8 that stand for numbers of a scan."""
+        values = points.attributes.get(name)
+        values = np.full(len(points.positions), np.nan) if values is None else values.astype(np.float64)
+        is_known = np.isfinite(values)
+        if name == "classification":
+            is_known &= (values >= 0) & (values <= 255)
+        self._unknown[name] += len(values) - int(np.count_nonzero(is_known))
+        return as_bytes(np.where(is_known, values, 0), *self._scan[name])
 
     def _scanners_of(self, points: Points) -> np.ndarray:
         """(N, 3) the place of each point's scanner, NaN where it is not known."""
@@ -116,8 +136,10 @@ class StoredScan:
 
         return painted
 
-    def _surfels_of(self, arrays: dict[str, np.ndarray], own: int, told: Callable[[float], bool]) -> Surfels:
-        """The surfels of the first `own` points."""
+    def _surfels_of(
+        self, arrays: dict[str, np.ndarray], own: int, told: Callable[[float], bool]
+    ) -> tuple[Surfels, np.ndarray]:
+        """The surfels of the first `own` points, and (N,) which points they were made from."""
         surfels, report = surfels_from_points(
             arrays["positions"],
             arrays.get("normals"),
@@ -132,7 +154,7 @@ class StoredScan:
         self._left_out += own - int(mine.sum())
         fields = {name: values[mine] for name, values in surfels.arrays().items()}
         fields["positions"] = (fields["positions"] + (surfels.origin - self._middle)).astype(np.float32)
-        return Surfels(origin=self._middle + self._offset, **fields)
+        return Surfels(origin=self._middle + self._offset, **fields), report.kept[mine]
 
 
 def _places_of(sample: Points) -> dict[int, np.ndarray]:

@@ -11,9 +11,10 @@ from typing import NamedTuple
 import bpy
 import numpy as np
 
-from ...interchange.scan_colors import GREYS, RAMP, ends_of, of_classes, on_ramp
+from ...interchange.scan_colors import CLASSES, GREYS, RAMP, ends_of, of_classes, on_ramp
 from ...primaries import converted
 from ...rendering.scene import Paint
+from ...streaming import Stream, measured
 from ...surfels import Surfels
 from ..enum_values import check_choices
 from ..geometry.derived import Derived
@@ -69,26 +70,46 @@ def _scan_colored(
     return derived.get(surfels, key, lambda: _painted(surfels, _colors(kind, values(), ramp, ends)))
 
 
-def stream_paint(object_: bpy.types.Object, to_origin: np.ndarray, notes) -> Paint | None:
-    """The colours that an evaluated object's settings choose for what views read from its file. to_origin: (4, 4) from
-    the file's coordinates to the object's."""
+def stream_paint(object_: bpy.types.Object, stream: Stream, to_origin: np.ndarray, notes) -> Paint | None:
+    """The colours that an evaluated object's settings choose for what views read from its file. stream: reads it.
+    to_origin: (4, 4) from its coordinates to the object's."""
     settings = getattr(object_.original, OBJECT_SETTINGS)
     check_choices(settings, "object properties")
     kind = settings.color_by
     if kind == "COLOR":
         return None
-    if kind != "HEIGHT":
+    name = settings.color_column
+    if kind != "HEIGHT" and name not in stream.file.scan:
         notes.add(
-            f"{object_.name} keeps its own colours, as its file holds no {settings.color_column or 'such numbers'}; "
+            f"{object_.name} keeps its own colours, as its file holds no {name or 'such numbers'}; "
             "store it with these colours, or colour it by height"
         )
         return None
-    row = _row(np.array(object_.matrix_world, np.float64) @ to_origin)
     ramp, ends = _ramp(settings)
+    if kind != "HEIGHT":
+        held = low, high = stream.file.scan[name]
+        if ends[0] is not None and (ends[0] < low or ends[1] > high):
+            notes.add(
+                f"{object_.name}: its file holds {name} from {low:,g} to {high:,g}; what is beyond is shown as these"
+            )
+        return _paint_of_scan(kind, name, held, ramp, ends)
+    row = _row(np.array(object_.matrix_world, np.float64) @ to_origin)
     if settings.color_is_automatic:  # of all that is in the file, and not of what a view happens to read
         ends = ends_of(_heights_of_kept(object_))
     key = row, ends, None if ramp is None else ramp.tobytes()
-    return Paint(key, lambda surfels: _painted(surfels, _colors(kind, _heights(surfels, row), ramp, ends)))
+    return Paint(key, lambda surfels, _: _painted(surfels, _colors(kind, _heights(surfels, row), ramp, ends)))
+
+
+def _paint_of_scan(kind: str, name: str, held: tuple[float, float], ramp: np.ndarray | None, ends) -> Paint:
+    """Colours of numbers that a file has, of which the bytes 0 and 255 stand for those held."""
+    if ends[0] is None:  # of all that is in the file, or of the standard's classes
+        ends = (0, len(CLASSES) - 1) if name == "classification" else held
+    key = kind, name, ends, None if ramp is None else ramp.tobytes()
+
+    def of(surfels: Surfels, scan: dict[str, np.ndarray]) -> Surfels:
+        return _painted(surfels, _colors(kind, measured(scan[name], *held), ramp, ends))
+
+    return Paint(key, of)
 
 
 def _heights_of_kept(object_: bpy.types.Object) -> np.ndarray:

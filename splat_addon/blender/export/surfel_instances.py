@@ -77,9 +77,11 @@ class SurfelInstances:
             notes.add(f"{object_.name} keeps its own colours under the overriding material, as they come from a file")
         to_origin = np.eye(4)
         to_origin[:3, 3] = offset_of(object_.original.data) - stream.file.origin
-        coarsest, paint = stream.coarsest, stream_paint(object_, to_origin, notes)
+        coarsest, paint = stream.coarsest, stream_paint(object_, stream, to_origin, notes)
         if paint is not None:
-            coarsest = self._store.derived.get(coarsest, paint.key, lambda: paint.of(stream.coarsest))
+            coarsest = self._store.derived.get(
+                coarsest, paint.key, lambda: paint.of(stream.coarsest, stream.roots.scan)
+            )
         read = _Read(Stored(coarsest, skipped=0, strayed=0))
         made = self._instances(object_, read, traits, None, notes)
         if len(made) > 1:

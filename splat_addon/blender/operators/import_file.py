@@ -15,7 +15,7 @@ from bpy.props import BoolProperty, CollectionProperty, EnumProperty, IntPropert
 from bpy_extras.io_utils import ImportHelper, poll_file_object_drop
 
 from ...interchange import SHARED_SUFFIXES, SUFFIXES, numbered_files, text_columns_of
-from ...streaming import id_of
+from ...streaming import SCAN_COLUMNS, id_of
 from ...streaming.layout import SUFFIX
 from ..conversion.blocks_opening import holds_blocks, open_blocks
 from ..conversion.file_import import FileImport, Reading, show_scan
@@ -33,11 +33,14 @@ from ..geometry.scene_offset import Surroundings, keep_offset
 from ..geometry.stored_surfels import read_surfels
 from ..geometry.surfel_files import relative_path
 from ..ids import IMPORT_FILE, OBJECT_SETTINGS
-from ..scan_color_settings import IMPORT_ITEMS
+from ..scan_color_settings import ATTRIBUTE_OF, IMPORT_ITEMS
 from ..spoken import said
 from .file_paths import absolute, file_sentence, path_property
 from .menu_entry import with_menu_entry
 from .modal_work import FileWork, ModalWork, Writing
+
+#: What is shown without being stored as colours.
+_SHOWN = ("HEIGHT", *(name for name, column in ATTRIBUTE_OF.items() if column in SCAN_COLUMNS))
 
 
 class IMPORT_SCENE_OT_surfels_ply(PointsProperties, ModalWork, ImportHelper, bpy.types.Operator):
@@ -196,8 +199,7 @@ contents tell"""
         # repeated from the redo panel, it replaces the file whose object was undone
         own = self._kept_as().get(path, "")
         kept = absolute(f"//{Path(self._name).stem}{SUFFIX}")
-        # height is shown without being stored
-        stored = "COLOR" if self.color_by == "HEIGHT" else self.color_by
+        stored = "COLOR" if self.color_by in _SHOWN else self.color_by
         return Keeping(path, kept, self, context.scene, Reading.of(self), own, stored)
 
     def _kept_as(self) -> dict[str, str]:
@@ -236,7 +238,7 @@ contents tell"""
         count = self._open(context, keeping.path, is_own=True)
         self._kept_as()[absolute(self.filepath)] = id_of(keeping.path)
         made = context.view_layer.objects.active
-        if self.color_by == "HEIGHT":  # all else is in the file
+        if self.color_by in _SHOWN:
             self._color(made)
         if keeping.offset is not None and self.has_scan_look:
             self._tell(show_scan(context, made, read_surfels(made.data)[0].positions))

@@ -112,12 +112,13 @@ class Streamed:
             return gathered.parts
         key = gathered, instance.paint.key
         if key not in painted:
-            painted[key] = self._painted.get(key) or tuple(_painted(instance.paint, part) for part in gathered.parts)
+            parts = zip(gathered.parts, gathered.scan_of_parts(), strict=True)
+            painted[key] = self._painted.get(key) or tuple(_painted(instance.paint, *part) for part in parts)
         return painted[key]
 
 
-def _painted(paint: Paint, part: Surfels) -> Surfels:
-    made = paint.of(part)
+def _painted(paint: Paint, part: Surfels, scan: dict[str, np.ndarray]) -> Surfels:
+    made = paint.of(part, scan)
     return made.as_transparent() if part.is_transparent else made
 
 

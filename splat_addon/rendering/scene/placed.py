@@ -160,10 +160,14 @@ class Placed:
 
 
 class Paint(NamedTuple):
-    """Colours in place of those in a file. key: equal where `of` makes the same. of: the surfels in these colours."""
+    """Colours in place of those in a file.
+
+    key: equal where `of` makes the same. of: surfels in these colours; given them, and those of their
+    `streaming.SCAN_COLUMNS` that the file has.
+    """
 
     key: tuple
-    of: Callable[[Surfels], Surfels]
+    of: Callable[[Surfels, dict[str, np.ndarray]], Surfels]
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from splat_addon.blender.geometry.world_surfels import world_surfels
+from splat_addon.hierarchy import Sight
 from splat_addon.interchange import write_ply
 from splat_addon.streaming import Stream, described
 
@@ -79,6 +80,20 @@ def test_a_scan_is_stored_without_a_blend_in_the_colors_that_are_chosen(surfels_
     assert (found.normals[:, 2] > 0.9).all() and len(np.unique(np.round(found.colors, 3), axis=0)) > 10
     low, high = found.colors[height.argmin(), :3], found.colors[height.argmax(), :3]
     assert low.sum() < high.sum()
+
+
+def test_classes_of_a_scan_are_stored_and_those_that_are_none_are_counted(surfels_command, tmp_path):
+    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(20.0), np.arange(20.0)))
+    classes = np.where(x < 10, 2, 6)
+    classes[:3] = 300, -1, 256
+    np.savetxt(tmp_path / "scan.xyz", np.stack([x, y, 0 * x, classes], axis=1), fmt="%g")
+    out, columns = tmp_path / "scan.surfelblocks", "x y z classification"
+    code, said = surfels_command("store", "--file", tmp_path / "scan.xyz", "--out", out, "--columns", columns)
+    assert code == 0 and "Took 0 as the classification of 3 points that have none" in said
+    stream = Stream(out, 0)
+    found = stream.seen(Sight(np.array([[0, 0, 0, 1.0]]), np.zeros(4), 1.0, 0.0, np.array([0, 0, 1.0, 0]), False, 0.0))
+    assert stream.file.scan == {"classification": (0, 255)}
+    assert np.bincount(found.gathered.scan["classification"]).tolist() == [3, 0, 197, 0, 0, 0, 200]
 
 
 @pytest.mark.parametrize(

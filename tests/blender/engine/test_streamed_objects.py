@@ -12,6 +12,7 @@ import pytest
 from splat_addon.blender import preferences
 from splat_addon.blender.engine import final_render
 from splat_addon.blender.geometry import surfel_files
+from splat_addon.rendering.presets import SCAN_LOOK
 from splat_addon.streaming import Stream, write_blocks
 
 
@@ -66,6 +67,38 @@ def test_it_is_coloured_by_height_as_in_the_blend(ends, stored, picture):
     picture()
     (note,) = final_render.last_frame_stats["notes"]
     assert "its file holds no classification" in note
+
+
+@pytest.mark.parametrize("kind", ["INTENSITY", "CLASSIFICATION", "ATTRIBUTE", "COLOR"])
+def test_a_scan_is_coloured_by_what_was_measured_as_in_the_blend(kind, scene, add_camera, picture, tmp_path):
+    """The file that an import kept it in has its own colours, intensity and classes."""
+    add_camera((0, 0, 6))
+    scene.surfel_splatting.shading, scene.surfel_splatting.detail_tolerance = SCAN_LOOK["shading"], 0.0
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "scene.blend"))
+    x, y = (axis.ravel() for axis in np.meshgrid(*[np.linspace(-1, 1, 30)] * 2))
+    rows = [x, y, 0 * x, 200 + 50 * x, 90 + 0 * x, 100 - 90 * y, 1000 * x * x + 7, np.where(y > 0.3, 2, 6)]
+    np.savetxt(tmp_path / "a.xyz", np.stack(rows, axis=1), fmt="%.4f")
+    names, pictures = "x y z red green blue intensity classification", []
+    for is_kept in (False, True):
+        given = {"text_columns": names, "keeps_in_file": is_kept, "isolated": "KEEP", "has_scan_look": False}
+        given["color_by"] = "COLOR" if kind == "ATTRIBUTE" else kind
+        bpy.ops.import_scene.surfels_ply(filepath=str(tmp_path / "a.xyz"), **given)
+        made = bpy.context.object
+        if kind == "ATTRIBUTE":
+            made.surfel_splatting.color_by, made.surfel_splatting.color_attribute = kind, "intensity"
+        assert bool(made.data.surfel_splatting.file) == is_kept and made.surfel_splatting.color_by == kind
+        pictures.append(picture())
+        assert final_render.last_frame_stats["splats"] == 900 and not final_render.last_frame_stats["notes"]
+        made.hide_render = True
+    before, after = pictures
+    assert np.ptp(before[before[..., 3] > 0.9][:, :3], axis=0).max() > 0.3
+    assert np.abs(after - before).max() < 0.02
+    if kind == "ATTRIBUTE":
+        made.hide_render, settings = False, made.surfel_splatting
+        settings.color_is_automatic, settings.color_to = False, 5000
+        picture()
+        (note,) = final_render.last_frame_stats["notes"]
+        assert "its file holds intensity from 8.1" in note
 
 
 def test_without_its_file_the_coarsest_are_drawn_with_a_warning(stored, picture, tmp_path):
