@@ -290,6 +290,7 @@ def test_many_instances_share_one_file(file, render):
     there = replace(scene, surfels=tuple(Instance(stream.coarsest, m, stream=stream) for m in matrices))
     here = replace(scene, surfels=tuple(Instance(surfels, m) for m in matrices), lights=(Light("sun", energy=2),))
     there = replace(there, lights=here.lights)
-    found = render(there, camera, replace(SETTINGS, shadow_resolution=0))
-    every = render(here, camera, replace(SETTINGS, shadow_resolution=0))
-    assert found.stats["instances"] == 40 and psnr(found.color, every.color) > 35
+    # one sample shows one splat of several that are below a pixel, and not the same one
+    settings = replace(SETTINGS, shadow_resolution=0, detail_tolerance=0.5, supersampling=4)
+    found, every = render(there, camera, settings), render(here, camera, settings)
+    assert found.stats["instances"] == 40 and psnr(found.color, every.color) > 38

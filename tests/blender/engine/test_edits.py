@@ -159,10 +159,10 @@ def test_what_was_moved_one_by_one_is_named(discs, picture, said):
 
 
 def test_frames_are_moved_once_for_an_animation(discs, scene, tmp_path, monkeypatch):
-    from splat_addon.blender.geometry import attributes
+    from splat_addon.blender.geometry import stored_surfels
 
-    calls, followed = [], attributes.followed
-    monkeypatch.setattr(attributes, "followed", lambda *given: calls.append(given) or followed(*given))
+    calls, followed = [], stored_surfels.followed
+    monkeypatch.setattr(stored_surfels, "followed", lambda *given: calls.append(given) or followed(*given))
     discs().matrix_world = PLACE
     bpy.ops.object.transform_apply()
     scene.frame_end, scene.render.filepath = 3, str(tmp_path / "frame_")
