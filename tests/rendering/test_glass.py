@@ -22,6 +22,7 @@ from splat_addon.rendering import (
     make_polygons,
     plan,
 )
+from splat_addon.rendering.features import glass
 from splat_addon.rendering.probes.glass import surfaces_of
 
 SETTINGS = Settings(method="quad", refraction=True)
@@ -164,6 +165,18 @@ def test_a_frame_without_glass_is_planned_as_before():
     assert [p.parts for p in on.passes] == [p.parts for p in off.passes]
     assert "glass" not in str([p.parts for p in on.passes])
     assert "it is drawn opaque: refraction is switched off" in str(plan(scene(), CAMERA, Settings()))
+
+
+@pytest.mark.parametrize("kind", ["polygons", "surfels"])
+def test_a_picture_beside_glass_follows_no_rays_through_it(kind, render, monkeypatch):
+    settings = replace(SETTINGS, reflections=False)
+    far, close = (CAMERA.cropped(x, 0, 48, 48) for x in (60, 44))
+    assert dict(plan(scene(kind), far, settings).skipped)["glass"] == "the picture shows none"
+    assert "glass" not in dict(plan(scene(kind), close, settings).skipped)
+    found = render(scene(kind), far, settings).color
+    monkeypatch.setattr(glass, "_may_show", lambda planning: True)
+    assert "glass" not in dict(plan(scene(kind), far, settings).skipped)
+    np.testing.assert_allclose(found, render(scene(kind), far, settings).color, atol=1e-5)
 
 
 @pytest.mark.parametrize("kind", ["polygons", "surfels"])

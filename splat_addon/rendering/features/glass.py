@@ -15,6 +15,7 @@ from ..scene import Scene
 from ..scene.glass_surfaces import LEAF, ROW_BITS
 from ..settings import Settings
 from ..shading_models import get_shading_model
+from ..shadows.casters import sees
 
 
 def glass(planning) -> bool:
@@ -23,7 +24,27 @@ def glass(planning) -> bool:
         return False
     if why := why_opaque(planning.settings):
         planning.skip("glass", f"it is drawn opaque: {why}")
-    return not why
+        return False
+    # what reflections are followed in must not depend on which part of a picture is drawn
+    follows_reflections = planning.settings.reflections and not planning.probes
+    if not follows_reflections and not _may_show(planning):
+        planning.skip("glass", "the picture shows none")
+        return False
+    return True
+
+
+def _may_show(planning) -> bool:
+    """Whether glass may be in the picture or close beside it: most faces of a probe see none."""
+    camera, table = planning.camera, planning.scene.table.seen
+    if camera.lens is not None:
+        return True
+    corners = table.taken(np.flatnonzero(table.of_kinds(has_glass))).world_corners
+    width, height = camera.size
+    return bool(sees(camera.cropped(-_BESIDE, -_BESIDE, width + 2 * _BESIDE, height + 2 * _BESIDE), corners).any())
+
+
+#: Pixels beside a picture that its filters may read.
+_BESIDE = 16
 
 
 def shadows(planning) -> bool:
