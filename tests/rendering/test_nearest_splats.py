@@ -43,8 +43,10 @@ def field(square) -> Scene:
     return Scene((*placed, alone), lights, (0.1,) * 3, polygons=(PolygonInstance(wall, name="wall", index=98),))
 
 
-def test_flat_surfaces_are_as_if_splats_blended(square, render, monkeypatch):
-    """Where a pixel sees one of them, all arrays are the same."""
+@pytest.mark.parametrize("least", [4, 20])
+def test_flat_surfaces_are_as_if_splats_blended(least, square, render, monkeypatch):
+    """Where a pixel sees one of them, all arrays are the same: of many alike, and of different ones from a pool."""
+    monkeypatch.setattr(steps, "LEAST_TOGETHER", least)
     scene = field(square)
     nearest = render(scene, CAMERA, SETTINGS)
     assert "nearest_splats" in [p.name for p in nearest.stats["plan"].passes]

@@ -111,6 +111,9 @@ def test_backs_are_seen_from_one_side_of_a_sheet(shapes):
     assert show_backs(table, above).tolist() == [False, True, False]
 
 
+#: Without levels of detail all splats blend, of how many objects whatsoever.
+BLENDED = {"detail_tolerance": 0.0}
+
 CASES = {
     "shadows": ({}, {}),
     "16-bit": ({}, {"storage": "16-bit", "supersampling": 2}),
@@ -128,7 +131,7 @@ def test_pictures_are_those_of_instances_drawn_one_by_one(case, shapes, on_devic
     """But for rounding: sums of splats are added in another order."""
     fields, chosen = CASES[case]
     outputs = ("color", "depth", "normal", "coverage", "object_index", "material_index")
-    scene, settings = field(shapes, **fields), Settings(outputs=outputs, shadow_resolution=128, **chosen)
+    scene, settings = field(shapes, **fields), Settings(outputs=outputs, shadow_resolution=128, **BLENDED, **chosen)
     monkeypatch.setattr(steps, "LEAST_TOGETHER", 100)
     alone, calls_alone = drawn(scene, settings, on_device, monkeypatch)
     assert not plan(scene, CAMERA, settings).has("TOGETHER")
@@ -163,7 +166,7 @@ def test_lights_of_sets_light_their_own_instances(shapes, on_device, monkeypatch
     scene = field(shapes)
     lit = replace(scene, lights=(replace(scene.lights[0], receivers=(1,)),))
     sets = {kind: tuple(replace(i, light_set=i.index // 4 % 2) for i in getattr(lit, kind)) for kind in shapes}
-    settings = Settings(outputs=("color",), shadow_resolution=0)
+    settings = Settings(outputs=("color",), shadow_resolution=0, **BLENDED)
     monkeypatch.setattr(steps, "LEAST_TOGETHER", 100)
     alone, _ = drawn(replace(lit, **sets), settings, on_device, monkeypatch)
     monkeypatch.setattr(steps, "LEAST_TOGETHER", 2)

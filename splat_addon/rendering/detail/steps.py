@@ -125,20 +125,22 @@ def may_step(instance: Instance, count: int) -> bool:
 
 def chosen_steps(steps: Steps, items: Items, camera: Camera, tolerance: float, is_depth_only: bool) -> np.ndarray:
     """(n,) the coarsest level of each that is off by at most so many pixels at its nearest point; -1 if none is."""
-    pixels = _most_pixels(items, camera)
+    pixels = _most_pixels(items, camera) * items.table.stretches
     with np.errstate(divide="ignore"):
         return np.searchsorted(steps.errors[:, int(is_depth_only)], tolerance / pixels, "right") - 1
 
 
-def are_small(steps: Steps, items: Items, chosen: np.ndarray, camera: Camera) -> np.ndarray:
-    """(n,) bool: those of whose splats no half-axis is longer than `MOST_NEAREST`. chosen: (n,) their levels."""
-    return (chosen >= 0) & (steps.sizes[chosen] * _most_pixels(items, camera) <= MOST_NEAREST)
+def are_small(longest: np.ndarray, items: Items, camera: Camera) -> np.ndarray:
+    """(n,) bool: those of whose splats no half-axis is longer than `MOST_NEAREST`. longest: (n,) of those half-axes, in
+    world units."""
+    return longest * _most_pixels(items, camera) <= MOST_NEAREST
 
 
 def _most_pixels(items: Items, camera: Camera) -> np.ndarray:
-    """(n,) pixels of an object unit at the nearest point of each."""
-    pixels = camera.pixels_per_unit() * items.table.stretches
+    """(n,) pixels of a world unit at the nearest point of each."""
     if camera.is_orthographic:
-        return pixels
+        return np.full(len(items), camera.pixels_per_unit())
     # merged surfels must not touch the near plane, where methods may treat splats differently
-    return np.where(items.nearest > camera.near, pixels / np.maximum(items.nearest, camera.near), np.inf)
+    return np.where(
+        items.nearest > camera.near, camera.pixels_per_unit() / np.maximum(items.nearest, camera.near), np.inf
+    )

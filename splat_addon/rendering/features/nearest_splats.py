@@ -21,7 +21,8 @@ from ..plan.graph import Part, Pass, Texture
 from ..plan.hosts import Host, Kind
 from ..plan.numbering import noted
 from ..plan.planning import count
-from ..view import Items
+from ..scene import Placed
+from ..view import DrawItem, Items
 
 #: Of the nearest splat 1 + the number of its object, and its own; 0 where it is not noted.
 NEAREST = Texture("nearest_splat", "RG32F")
@@ -63,16 +64,24 @@ def parts(planning, p):
 
 
 def run(tile, p: Pass):
-    """Add the nearest splat of each sample, of one kind after another."""
-    target, program = tile.target(p), tile.program(p)
-    items = tile.repeats.found("noted instances", lambda: _by_number(tile))
-    for kind in tile.drawn_by(p).table.kinds:
-        if own := noted(tile).get(id(kind.placed)):
-            placed = items.item(int(np.flatnonzero(items.table.of_kinds(lambda one, own=own: one is own.placed))[0]))
-            blocks = tile.blocks(program, placed, draw_block(tile, placed, stride=own.count))
-            call = blocks, tile.textures(p, program, placed), tile.seen_part(p)
-            tile.repeats.call(tile.resources.device.draw_fullscreen, program, target, *call)
+    """Add the nearest splat of each sample, of one kind or pool after another."""
+    target, program, drawn = tile.target(p), tile.program(p), tile.drawn_by(p)
+    of_kinds = noted(tile)
+    seen = {own: kind.placed for kind in drawn.table.kinds if (own := of_kinds.get(id(kind.placed)))}
+    for own, of_kind in seen.items():
+        placed = _any_of(tile, of_kind, own.is_pooled)
+        blocks = tile.blocks(program, placed, draw_block(tile, placed, stride=own.count))
+        call = blocks, tile.textures(p, program, placed), tile.seen_part(p)
+        tile.repeats.call(tile.resources.device.draw_fullscreen, program, target, *call)
     return target
+
+
+def _any_of(tile, of_kind: Placed, is_pooled: bool) -> DrawItem:
+    """An instance of a kind, among all that may be noted."""
+    items = tile.repeats.found("may be noted", lambda: _by_number(tile))
+    if is_pooled:
+        items = tile.repeats.found("in a pool", lambda: replace(items, places=np.zeros((len(items), 2))))
+    return items.item(int(np.flatnonzero(items.table.of_kinds(lambda placed: placed is of_kind))[0]))
 
 
 def _by_number(tile) -> Items:

@@ -13,8 +13,7 @@ import numpy as np
 
 from ...surfels import Surfels
 from ..depth_range import DepthExtent, depth_extent
-from ..detail import levels
-from ..detail.steps import may_step
+from ..detail import levels, steps
 from ..frame import NUMBERED
 from ..plan.graph import Pass, Texture
 from ..plan.hosts import BLENDED, LIT_HOSTS, SPLAT_HOSTS, Kind
@@ -23,6 +22,7 @@ from ..scene import Placed
 from ..shading_models import ShadingModel, get_shading_model
 from ..shadows.atlas import ShadowMap
 from ..shadows.maps import shadow_maps as maps_for
+from ..upload.pools import may_share
 from .textures import IDENTITY, POLYGON_IDENTITY, ROW_DEPTH, ROW_IDENTITY, VISIBILITY_DEPTH, rows_of
 
 #: Up to this ratio of the farthest depth to the nearest (for a parallel camera, of its depth range to its window),
@@ -182,19 +182,29 @@ def merging(planning: Planning) -> frozenset[Surfels]:
 
 
 def nearest_kinds(planning: Planning) -> tuple[Placed, ...]:
-    """One instance of each kind whose splats need not blend where they are small: neither textures nor normals change
-    over them, and a filter of silhouettes blends what samples show."""
-    if not planning.method.filters_silhouettes or planning.model.is_diagnostic:
+    """One instance of each kind whose splats need not blend where they are small: there are many alike, or of small
+    ones, neither textures nor normals change over them, and a filter of silhouettes blends what samples show."""
+    method, settings = planning.method, planning.settings
+    is_lit_later = not (planning.model.is_diagnostic or planning.find(splat_lighting).is_wanted)
+    if not (method.filters_silhouettes and settings.detail_tolerance and is_lit_later):
         return ()
-    found, may_show = planning.find(merging), [kind.placed for kind in planning.surfels if _shows_nearest(*kind)]
-    merged = [placed for placed in may_show if placed.surfels in found]
-    room = np.cumsum([len(placed.surfels) for placed in merged]) <= MOST_NOTED
-    return tuple(placed for placed, has_room in zip(merged, room, strict=True) if has_room)
+    merged, kinds = planning.find(merging), planning.surfels
+    found, of_pool = [], []
+    for kind, changes, shares in zip(kinds, kinds.holds(_changes), kinds.holds(may_share), strict=True):
+        if not changes and kind.placed.surfels in merged:
+            found += [kind.placed] if steps.may_step(*kind) else []
+        elif not changes and shares and kind.count < steps.LEAST_TOGETHER:
+            of_pool.append(kind)
+    if sum(kind.count for kind in of_pool) >= steps.LEAST_TOGETHER:
+        found += [kind.placed for kind in of_pool]
+    room = np.cumsum([len(placed.surfels) for placed in found]) <= MOST_NOTED
+    return tuple(placed for placed, has_room in zip(found, room, strict=True) if has_room)
 
 
-def _shows_nearest(placed: Placed, count: int) -> bool:
-    changes = placed.is_textured or placed.is_transparent or placed.surfels.normals_change
-    return may_step(placed, count) and not changes
+def _changes(placed: Placed) -> bool:
+    """Whether colours or normals change over splats, or these do not hide what is behind them and nothing else."""
+    is_apart = placed.is_holdout or placed.is_split or placed.is_transparent
+    return is_apart or placed.is_textured or placed.surfels.normals_change
 
 
 def have_clip_lines(planning: Planning) -> int:

@@ -158,6 +158,8 @@ def _draw_together(tile, p, target, batch: Items, program: Pipeline, which: rang
 def _draw_pooled(tile, p, target, items: Items, programs: Programs, viewport) -> Generator[Pause]:
     """Draw those of the items that are in a pool."""
     for batch, more, most in pooled_batches_of(tile, items):
+        if batch.show_nearest and p.host in SPLAT_HOSTS:
+            continue
         program = yield from programs.of("together", *more)
         yield from _draw_together(tile, p, target, batch, program, range(most), viewport)
 

@@ -69,17 +69,20 @@ class CutChoice:
             found[rows] = chosen_steps(steps, items.taken(rows), self.camera, tolerance, is_depth_only)
         return found
 
-    def show_nearest(self, items: Items, steps: np.ndarray) -> np.ndarray:
+    def show_nearest(self, items: Items, steps: np.ndarray | None = None) -> np.ndarray:
         """(n,) bool: those whose splats are so small that each sample shows the nearest (`features.nearest_splats`).
-        steps: as of `steps_of`."""
-        found = np.zeros(len(items), bool)
-        if self.is_depth_only or not self.plan.find(nearest_kinds):
-            return found
-        for placed in self.plan.find(nearest_kinds):
-            rows = np.flatnonzero(items.table.of_kinds(lambda other, placed=placed: other is placed) & (steps >= 0))
-            if len(rows):
-                found[rows] = are_small(self.steps(placed), items.taken(rows), steps[rows], self.camera)
-        return found
+        steps: as of `steps_of`, of which others blend; None for objects that are drawn whole, from a pool."""
+        kinds = {id(placed) for placed in self.plan.find(nearest_kinds)}
+        if self.is_depth_only or not kinds:
+            return np.zeros(len(items), bool)
+        found = items.table.of_kinds(lambda placed: id(placed) in kinds)
+        if steps is None:
+            return found & are_small(items.table.radii, items, self.camera)
+        longest = np.full(len(items), np.inf)
+        for kind in items.table.taken(found & (steps >= 0)).kinds:
+            rows = items.table.of_kinds(lambda other, kind=kind: other is kind.placed) & (steps >= 0)
+            longest[rows] = self.steps(kind.placed).sizes[steps[rows]] * items.table.stretches[rows]
+        return are_small(longest, items, self.camera)
 
     def steps(self, instance: Instance) -> Steps:
         """The levels at which an instance may be drawn whole."""

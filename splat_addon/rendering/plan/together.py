@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -37,9 +38,11 @@ def _made_batches(tile: TileContext, items: Items) -> list[Items]:
 
 def pool_of(tile: TileContext, items: Items) -> Pool | None:
     """The pool that items of different kinds are drawn from, if there is one."""
-    if not len(items):
-        return None
-    kind = type(items.table.placed[0])
+    return made_pool(tile, type(items.table.placed[0])) if len(items) else None
+
+
+def made_pool(tile: TileContext, kind: type) -> Pool | None:
+    """The pool of surfels or of polygons, if there is one."""
     return tile.shared.kept(("pool", kind), lambda: _made_pool(tile, kind))
 
 
@@ -72,8 +75,11 @@ def _found_in_pool(tile: TileContext, items: Items):
     kinds = rows[items.table.kind_of]
     own, kinds = items.taken(kinds >= 0), kinds[kinds >= 0]
     first, clipped, counts = (array[kinds] for array in (pool.first, pool.clipped, pool.counts))
+    nearest = tile.show_nearest(own)
     for more, start, size in (((), first + clipped, counts - clipped), (("clipped",), first, clipped)):
-        yield from ((batch, more, most) for batch, most in pooled_batches(own, start, size))
+        for rows in (np.flatnonzero(nearest), np.flatnonzero(~nearest)):
+            for batch, most in pooled_batches(own.taken(rows), start[rows], size[rows]):
+                yield replace(batch, show_nearest=bool(nearest[rows[0]])), more, most
 
 
 def _rows_in(pool: Pool, every_kind: tuple[Placed, ...]) -> np.ndarray:
