@@ -116,6 +116,12 @@ def test_suns_and_the_brightest_lamps_have_room_before_others(monkeypatch):
     assert made.find(shadows).without == 2
 
 
+def test_a_black_light_needs_no_map():
+    black = [replace(LIGHTS["point"], energy=0), replace(LIGHTS["sun"], color=(0, 0, 0))]
+    scene = replace(balls(LIGHTS["point"]), lights=(*black, LIGHTS["point"]))
+    assert {one.light for one in plan(scene, CAMERAS["near"], SETTINGS).find(shadows).maps} == {2}
+
+
 @pytest.mark.parametrize(("lamps", "side"), [(12, 256), (13, 128)])
 def test_the_maps_of_many_lamps_share_the_texels_of_fewer(lamps, side):
     """Five faces of each see casters."""

@@ -53,14 +53,14 @@ def shadow_maps(
 
     How many lights there is room for does not depend on the camera, so that none loses its shadow while it moves.
     """
-    if not any(light.casts_shadow for light in scene.lights):
+    if not any(map(_asks, scene.lights)):
         return (), 0
     casters = scene.table.casting
     if not len(casters):
         return (), 0
     corners = casters.world_corners
-    suns = sum(light.casts_shadow and light.kind == "sun" for light in scene.lights)
-    lamps = sum(light.casts_shadow and light.kind != "sun" for light in scene.lights)
+    suns = sum(_asks(light) and light.kind == "sun" for light in scene.lights)
+    lamps = sum(_asks(light) and light.kind != "sun" for light in scene.lights)
     for_sun = receivers(scene.table.seen, replace(viewers.sun, lens=None), lights_splats) if suns else None
     for_lamps = [receivers(scene.table.seen, camera, lights_splats) for camera in viewers.lamps] if lamps else []
     finest = max(min(resolution * (FINER_SUN // atlas_columns(suns)), LARGEST_SIDE), resolution)
@@ -83,7 +83,7 @@ def _with_room(
 ) -> tuple[dict[int, tuple[list[Camera], bool]], int]:
     """(number of a light -> its cameras that see casters, and whether they are faces of a cube) of the lights for which
     there is room, and the number of the others. corners: (n, 8, 3) of the casters, world."""
-    order = sorted((k for k, light in enumerate(lights) if light.casts_shadow), key=lambda k: _rank(lights[k]))
+    order = sorted((k for k, light in enumerate(lights) if _asks(light)), key=lambda k: _rank(lights[k]))
     found, count = {}, 0
     for before, number in enumerate(order):
         whole = cameras(lights[number])
@@ -96,9 +96,18 @@ def _with_room(
     return found, 0
 
 
+def _asks(light: Light) -> bool:
+    """Whether a light can cast shadows: a black one has none."""
+    return light.casts_shadow and _brightness(light) > 0
+
+
+def _brightness(light: Light) -> float:
+    return abs(light.energy) * float(np.abs(light.color).max())
+
+
 def _rank(light: Light) -> tuple[bool, float]:
     """Suns come first, which shine everywhere, and the brightest before others."""
-    return light.kind != "sun", -abs(light.energy) * float(np.abs(light.color).max())
+    return light.kind != "sun", -_brightness(light)
 
 
 def _needed(
