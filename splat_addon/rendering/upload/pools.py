@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 MOST_SPLATS = 2048
 
 #: Splats or triangles that may be in one pool, which is made at once.
-MOST_POOLED = 1 << 18
+MOST_POOLED = 1 << 19
 
 
 def may_share(placed: Placed) -> bool:
