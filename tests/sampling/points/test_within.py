@@ -31,7 +31,7 @@ def of_room(count: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def right(points: np.ndarray, normals: np.ndarray) -> float:
-    """Share of the points of which more is seen of the side that their true normals face."""
+    """Share of the points of which more is seen of the side that their geometric normals face."""
     near, distances = nearest_neighbours(points, 12)
     more, _ = seen_sides(points, normals, near, spacings(distances))
     return (more > 0).mean()
