@@ -83,6 +83,14 @@ def test_a_change_is_that_of_all_copies():
     np.testing.assert_array_equal(seen[3].matrix_world, made[3].matrix_world)
 
 
+def test_a_part_is_changed_without_what_only_others_have():
+    """As the surfels of a scene that has polygons, too, of which a view's first picture shows few."""
+    asked = []
+    part = joined(placed_at([ONE], places(3), np.zeros(3, int)), placements([OTHER]))[:2]
+    part.changed(lambda one: asked.append(one) or one)
+    assert asked == [ONE]
+
+
 def test_numbers_of_slots_follow_one_another_and_an_object_that_is_there_twice_has_its_own_once():
     scene = Scene(polygons=joined(placed_at([ONE], places(2), np.zeros(2, int)), placements([OTHER, ONE, OTHER])))
     assert scene.table.slots.tolist() == [[1, 1], [3, 1], [5, 0], [6, 1], [5, 0]]

@@ -66,7 +66,7 @@ class Placements(Sequence):
 
     def pruned(self) -> Placements:
         """The same without prototypes that none of them has."""
-        are_present = np.bincount(self.of, minlength=len(self.prototypes)) > 0
+        are_present = self._are_present
         if are_present.all():
             return self
         of = (np.cumsum(are_present, dtype=np.int32) - 1)[self.of]
@@ -74,7 +74,9 @@ class Placements(Sequence):
 
     def changed(self, change: Callable[[Placed], Placed]) -> Placements:
         """The instances with what a function makes of them, which is the same at all places."""
-        changed = tuple(change(one) for one in self.prototypes)
+        # a part of several kinds of instances has the prototypes of all
+        each = zip(self.prototypes, self._are_present.tolist(), strict=True)
+        changed = tuple(change(one) if is_present else one for one, is_present in each)
         if all(one is before for one, before in zip(changed, self.prototypes, strict=True)):
             return self
         return Placements(changed, self.are_copied, self.of, self.matrices)
@@ -90,8 +92,12 @@ class Placements(Sequence):
     @property
     def different(self) -> tuple[Placed, ...]:
         """The prototypes that any of them has."""
-        present = np.bincount(self.of, minlength=len(self.prototypes))
-        return tuple(self.prototypes[row] for row in np.flatnonzero(present).tolist())
+        return tuple(self.prototypes[row] for row in np.flatnonzero(self._are_present).tolist())
+
+    @property
+    def _are_present(self) -> np.ndarray:
+        """(p,) bool, whether any of them has each prototype."""
+        return np.bincount(self.of, minlength=len(self.prototypes)) > 0
 
 
 def placed_at(placed: Sequence[Placed], matrices: np.ndarray, of: np.ndarray | None = None) -> Placements:
