@@ -106,4 +106,4 @@ def test_the_plan_names_what_cuts_and_what_cannot():
     assert dict(plan(scene, CAMERA, flat()).features)["HOLDOUT"] == "1 of 2 instances cut holes"
     assert "HOLDOUT" not in dict(plan(Scene([sheet(0)]), CAMERA, flat()).features)
     made = plan(scene, CAMERA, flat(method="sprites_unfiltered"))
-    assert "drawn as others are" in dict(made.skipped)["holdout"]
+    assert "draws objects that cut holes as others" in dict(made.skipped)["holdout"]

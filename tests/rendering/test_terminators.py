@@ -14,8 +14,9 @@ from splat_addon.rendering import Camera, Instance, PolygonInstance, Scene, Sett
 from splat_addon.sampling import DEFAULT_CREASE_ANGLE, TriangleMesh
 from splat_addon.sampling.attributes.lifts import lifts
 from tests.plain import sample_mesh
-from tests.rendering.test_own_shadows import CHALK, LIGHTS, SIZE, uv_sphere
+from tests.rendering.test_own_shadows import CHALK, LIGHTS, uv_sphere
 
+SIZE = (112, 112)
 #: Lights at the side, so that the terminator is in the middle of the picture.
 CAMERA = Camera.perspective(look_at((3.2, -3.0, -0.6), (0, 0, 0)), 0.62, SIZE, near=0.1, far=100)
 KINDS = "surfels", "polygons"
