@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import gc
 import statistics
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
@@ -57,6 +58,7 @@ def measure(
 ) -> Iterator[Row]:
     """Yield a row for each choice, once it has been drawn in all turns; an untimed picture comes before them. Raises
     `RenderCancelled`, and as `Renderer.render`."""
+    gc.collect()  # textures of renderers that are gone would count as bytes of the first choices
     for number, choice in enumerate(choices):
         wanted, times = choice.of(settings), []
         for turn in range(turns + 1):
