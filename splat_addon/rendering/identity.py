@@ -35,7 +35,7 @@ class Identities:
 
     @property
     def _placed(self) -> Placements:
-        return joined(self.scene.surfels, self.scene.polygons)
+        return joined(self.scene.surfels, self.scene.polygons).pruned()
 
     def _of_numbers(self, values: Callable[[Placed], list[float]], dtype: type) -> np.ndarray:
         """(n,) a value of each number, in the order of `InstanceTable.slots`. values: for each material of a

@@ -55,6 +55,7 @@ READERS = {
     ),
     "view layer": (
         "engine/final_render",
+        "engine/render_resources",
         "engine/motion_blur",
         "engine/render_passes",
         "export/scene",

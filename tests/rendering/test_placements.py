@@ -11,10 +11,11 @@ import pytest
 from splat_addon.rendering import Camera, Scene, look_at, make_polygons
 from splat_addon.rendering.depth_range import are_outside, seen_by
 from splat_addon.rendering.identity import Identities
-from splat_addon.rendering.scene import Material, PolygonInstance, placed_at
+from splat_addon.rendering.scene import Instance, Material, PolygonInstance, placed_at
 from splat_addon.rendering.scene import table as tables
 from splat_addon.rendering.scene.placements import joined, placements
 from splat_addon.rendering.view import build_view
+from splat_addon.surfels import Surfels
 
 SHAPE = make_polygons(np.array([(0, 0, 0), (1, 0, 0), (0, 1, 0.5)], float), [(0, 1, 2)])
 CAMERA = Camera.perspective(look_at((0, -9, 4), (0, 0, 0.3)), 0.7, (40, 32))
@@ -100,9 +101,19 @@ def test_numbers_of_slots_follow_one_another_and_an_object_that_is_there_twice_h
     assert [*identities.names] == ["one", "other"]
 
 
+def test_a_part_of_a_scene_has_numbers_without_the_names_of_the_rest():
+    scene = Scene(polygons=joined(placed_at([ONE], places(2), np.zeros(2, int)), placements([OTHER])))
+    part = Identities(replace(scene, polygons=scene.polygons[:2]))
+    assert [*part.names] == ["one"] and len(part.hashes) == 5
+
+
 def test_a_pickled_scene_has_the_same_instances():
-    scene = Scene(polygons=placed_at([ONE], places(3), np.zeros(3, int)))
+    up = np.array([[0, 0, 1]], np.float32)
+    splat = Instance(Surfels(0 * up, np.eye(1, 4), np.ones((1, 2)), up, np.ones((1, 4)), np.zeros(1, np.int32)))
+    copies = (placed_at([one], places(3), np.zeros(3, int)) for one in (splat, ONE))
+    scene = Scene(next(copies), polygons=next(copies))
     again = pickle.loads(pickle.dumps(scene))
+    assert all(one is other for one, other in zip(again.shown, (*again.surfels, *again.polygons), strict=True))
     np.testing.assert_array_equal(again.table.matrices, scene.table.matrices)
     assert [one.name for one in again.polygons] == ["one"] * 3
 

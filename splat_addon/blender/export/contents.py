@@ -19,8 +19,8 @@ class Content(Flag):
     """What an entry has.
 
     SURFELS: those of its mesh or point cloud. SHOWN_POINTS: surfels that it shows as points, in the place of these.
-    FACES: of its mesh. BARE_POINTS: a mesh of points alone that are no surfels; edges
-    show nothing in Cycles either.
+    FACES: of its mesh. BARE_POINTS: a mesh of points alone that are no surfels; one of edges shows nothing, as in
+    Cycles.
     """
 
     SURFELS = auto()

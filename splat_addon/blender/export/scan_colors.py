@@ -56,7 +56,7 @@ def _scan_colored(
         return surfels
     if kind == "HEIGHT":
         row = _row(np.array(object_.matrix_world, np.float64))
-        digest, values = hash(row), partial(_heights, surfels, row)
+        digest, values = row, partial(_heights, surfels, row)
     elif column is None:
         what = f"attribute {settings.color_column!r} of one number per point" if settings.color_column else "attribute"
         notes.add(f"{object_.name} has no {what} to be coloured by, and keeps its own colours")

@@ -65,10 +65,9 @@ class SurfelStore:
         if key not in self._current or self._kept[key].name != name:
             surfels, skipped, strayed = read_stored(points, self._followed, name, is_solid, offset)
             before = [kept for kept in self._kept.values() if kept.name == name]
-            kept = next((k for k in before if have_same_values(k.surfels, surfels)), None)
-            kept = kept or Kept(name, surfels, 0, 0)
-            tell_replaced(before, kept)
-            self._kept[key] = kept._replace(skipped=skipped, strayed=strayed)
+            same = next((k.surfels for k in before if have_same_values(k.surfels, surfels)), surfels)
+            self._kept[key] = Kept(name, same, skipped, strayed)
+            tell_replaced(before, self._kept[key])
             self._current.add(key)
         kept = self._kept[key]
         return Stored(kept.surfels, kept.skipped, kept.strayed)

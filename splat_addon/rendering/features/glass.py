@@ -38,7 +38,7 @@ def _may_show(planning) -> bool:
     camera, table = planning.camera, planning.scene.table.seen
     if camera.lens is not None:
         return True
-    corners = table.taken(np.flatnonzero(table.of_kinds(has_glass))).world_corners
+    corners = table.taken(table.of_kinds(has_glass)).world_corners
     width, height = camera.size
     return bool(sees(camera.cropped(-_BESIDE, -_BESIDE, width + 2 * _BESIDE, height + 2 * _BESIDE), corners).any())
 

@@ -119,6 +119,8 @@ def run(tile, p: Pass):
     """Fill the atlas, one visibility pass per map. Parallel cameras store hardware depth, others depth / far."""
     target = tile.target(p)
     target.clear(depth=1.0)
+    states = ({**p.state, "fragment_depth": is_linear, "sample_shading": False} for is_linear in (False, True))
+    drawn = [p.with_values(state=state) for state in states]
     for made, view in zip(tile.plan.find(shadows).maps, tile.shared.shadow_views, strict=True):
         is_linear = not made.camera.is_orthographic
         seen = replace(
@@ -133,8 +135,7 @@ def run(tile, p: Pass):
             tile, plan=seen, camera=made.drawn, settings=settings, view=view, shown_blocks={},
             is_depth_only=True, repeats=Repeats(),
         )  # fmt: skip
-        drawn = p.with_values(state={**p.state, "fragment_depth": is_linear, "sample_shading": False})
-        yield from visibility.run_in(from_light, drawn, target, made.viewport)
+        yield from visibility.run_in(from_light, drawn[is_linear], target, made.viewport)
     return target
 
 

@@ -77,7 +77,7 @@ class CutChoice:
             return np.zeros(len(items), bool)
         found = items.table.of_kinds(lambda placed: id(placed) in kinds)
         if steps is None:
-            return found & are_small(items.table.radii, items, self.camera)
+            return are_small(np.where(found, items.table.radii, np.inf), items, self.camera)
         longest = np.full(len(items), np.inf)
         for kind in items.table.taken(found & (steps >= 0)).kinds:
             rows = items.table.of_kinds(lambda other, kind=kind: other is kind.placed) & (steps >= 0)

@@ -49,4 +49,5 @@ def first_noted(tile: TileContext, placed: DrawItem) -> float:
     if not placed.items.show_nearest:
         return -1.0
     table = placed.items.table
-    return float(noted(tile)[id(table.every_kind[table.kind_of[placed.row]])].first)
+    kind = table.prototypes.kinds[table.of[placed.row]]
+    return float(noted(tile)[id(table.every_kind[kind])].first)

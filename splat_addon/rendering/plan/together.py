@@ -77,9 +77,9 @@ def _found_in_pool(tile: TileContext, items: Items):
     first, clipped, counts = (array[kinds] for array in (pool.first, pool.clipped, pool.counts))
     nearest = tile.show_nearest(own)
     for more, start, size in (((), first + clipped, counts - clipped), (("clipped",), first, clipped)):
-        for rows in (np.flatnonzero(nearest), np.flatnonzero(~nearest)):
-            for batch, most in pooled_batches(own.taken(rows), start[rows], size[rows]):
-                yield replace(batch, show_nearest=bool(nearest[rows[0]])), more, most
+        for some in (np.flatnonzero(nearest), np.flatnonzero(~nearest)):
+            for batch, most in pooled_batches(own.taken(some), start[some], size[some]):
+                yield replace(batch, show_nearest=bool(nearest[some[0]])), more, most
 
 
 def _rows_in(pool: Pool, every_kind: tuple[Placed, ...]) -> np.ndarray:

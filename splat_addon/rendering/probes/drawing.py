@@ -150,9 +150,7 @@ def _left_out(scene: Scene, rows: tuple[int, ...]) -> Scene:
     def of(placed: Placements) -> Placements | tuple[Placed, ...]:
         if not left_out:
             return placed.changed(lambda one: _seen(one, one.is_reflected))
-        shown = (one.is_reflected and one not in left_out for one in placed)
-        pairs = zip(placed, shown, strict=True)
-        return tuple(_seen(*pair) for pair in pairs)
+        return tuple(_seen(one, one.is_reflected and one not in left_out) for one in placed)
 
     return replace(scene, surfels=of(scene.surfels), polygons=of(scene.polygons))
 

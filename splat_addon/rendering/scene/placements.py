@@ -136,7 +136,7 @@ def joined(*parts: Placements) -> Placements:
 
 def _both(first: Placements, second: Placements) -> Placements:
     if second.follows(first):
-        whole = first._whole or second._whole
+        whole = first._whole
         return whole[first._first : second._first + len(second)]
     first, second = first.pruned(), second.pruned()
     return Placements(

@@ -62,6 +62,11 @@ class Scene:
         """What it is pickled by: its fields alone, not what was found of them, which may refer to code."""
         return {f.name: getattr(self, f.name) for f in fields(self)}
 
+    def __setstate__(self, state: dict[str, object]) -> None:
+        """Its surfels and polygons become parts of the same instances again."""
+        self.__dict__.update(state)
+        self.__post_init__()
+
     @property
     def seen_environment(self) -> Environment | None:
         """The environment, if it is the background."""

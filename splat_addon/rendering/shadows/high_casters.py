@@ -26,17 +26,18 @@ def brought_down(casters: InstanceTable, camera: Camera) -> InstanceTable:
     """The casters of a sun: those that are above its map are moved along the light, and pressed flat, into the first
     part of its depths. Their shadows stay the same. Of those that reach into it, too, the upper part is there a second
     time."""
-    depths = (camera.matrix_world[:3, 3] - casters.world_corners) @ camera.matrix_world[:3, 2]
+    corners = casters.world_corners
+    depths = (camera.matrix_world[:3, 3] - corners) @ camera.matrix_world[:3, 2]
     is_above, begins_above = depths.max(axis=1) < camera.near, depths.min(axis=1) < camera.near
     if begins_above.any():
         # what is beside the map is not seen
-        is_over = sees(replace(camera, near=-MAX_LENGTH, far=MAX_LENGTH), casters.world_corners)
+        is_over = sees(replace(camera, near=-MAX_LENGTH, far=MAX_LENGTH), corners)
         is_above, begins_above = is_above & is_over, begins_above & is_over
     if not begins_above.any():
         return casters
     is_moved = is_above & casters.of_kinds(comes_down)
-    made = [_pressed(casters.placed[k], camera, depths[k]) for k in np.flatnonzero(is_moved).tolist()]
-    rows = [*np.flatnonzero(is_moved).tolist()]
+    rows = np.flatnonzero(is_moved).tolist()
+    made = [_pressed(casters.placed[k], camera, depths[k]) for k in rows]
     partly = np.flatnonzero(begins_above & ~is_above & casters.of_kinds(_can_be_pressed)).tolist()
     if upper := pressed_above([casters.placed[k] for k in partly], camera, _PRESSED * camera.far):
         made.append(PolygonInstance(upper, camera.matrix_world))

@@ -128,11 +128,11 @@ def _needed(
     cameras = [resized(camera, side) for camera in cameras]
     if light.kind == "sun":
         casters = brought_down(casters, cameras[0])
+    corners = casters.world_corners
     for camera, look in zip(cameras, looks, strict=True):
         spread = spread_of(light, camera)
         # a wider window shows more
         if one := together([looked_up(camera, one, spread) for one in seen]) if is_smaller else look:
-            corners = casters.world_corners
             block = sees(camera, corners) & in_the_way(light, _texel_of(camera), seen, spread, corners)
             if block.any():
                 found.append(

@@ -139,7 +139,7 @@ def _seen_near(table: InstanceTable, camera: Camera) -> tuple[Seen, np.ndarray]:
     is_kept[others] = among_others(seen.table.triangles[others], *depths)
     if is_kept.all():
         return seen, seen.table.world_corners
-    boxes, in_world = seen.from_eye.corners.copy(), seen.table.world_corners
+    boxes, in_world = seen.from_eye.corners.copy("K"), seen.table.world_corners
     around = near_things(table, camera) if len(seen.table.reaching) else None
     for row in seen.table.reaching.tolist():
         places, world = seen_places_in(seen.table.placed[row], camera, around)
