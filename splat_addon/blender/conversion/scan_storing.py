@@ -77,7 +77,8 @@ class StoredScan:
             self.notes.append(f"Skipped {left_out:,} points that stand alone, repeat another or have no place")
         for name, unknown in self._unknown.items():
             if unknown:
-                self.notes.append(f"Took 0 as the {name} of {unknown:,} points that have none")
+                least = self._scan[name][0]
+                self.notes.append(f"Took {least:g} as the {name} of {unknown:,} points that have none")
         return count
 
     def _parts(self) -> Iterator[dict[str, np.ndarray]]:
@@ -104,7 +105,8 @@ class StoredScan:
         if name == "classification":
             is_known &= (values >= 0) & (values <= 255)
         self._unknown[name] += len(values) - int(np.count_nonzero(is_known))
-        return as_bytes(np.where(is_known, values, 0), *self._scan[name])
+        low, high = self._scan[name]
+        return as_bytes(np.where(is_known, values, low), low, high)
 
     def _scanners_of(self, points: Points) -> np.ndarray:
         """(N, 3) the place of each point's scanner, NaN where it is not known."""

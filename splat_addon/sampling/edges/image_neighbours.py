@@ -58,7 +58,7 @@ def image_neighbours(
     depth: float,
     grid: Grid,
 ) -> Iterator[Callable[[], Neighbours]]:
-    """Yields a job for each band of rows of the image, in which the rows of each surfel lie.
+    """Yields a job for each band of rows of the image; a surfel lies in one band.
 
     positions: (N, 3) float32 surfels, relative to the grid's middle. ends: (2, 2, e) float32 of sides, across and up in
     the image along `axis`, in cells from there. edges: (e,) of which edge, ascending. planes: (3, e) float32, their

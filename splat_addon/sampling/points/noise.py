@@ -158,7 +158,7 @@ def _average(
             cosine += column * mine
         weight = weights(cosine)
         sums = own + np.stack([np.einsum("kn,kn->n", weight, column) for column in theirs])
-        made[:, part] = sums / np.sqrt(np.einsum("in,in->n", sums, sums))
+        made[:, part] = sums / np.sqrt(np.maximum(np.einsum("in,in->n", sums, sums), np.float32(1e-30)))
 
     for _ in range(rounds):
         in_portions(len(rows), CHUNK, averaged, report)

@@ -13,7 +13,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ...runs import sorted_with_order
+from ...runs import order_of, ranges, sorted_with_order
 from ...workers import in_portions
 
 #: Neighbours that the graph connects; more would cost time and bridge thin gaps.
@@ -174,12 +174,19 @@ def scanned_sides(
     agreement = _agreement(columns, directions, np.repeat(steep, near.shape[1]), near.ravel()).reshape(near.shape)
     signs = facing.copy()
     signs[steep] = 0
-    rest = np.arange(len(steep))
-    while len(rest):
-        found = np.sign((agreement[rest] * signs[near[rest]]).sum(axis=1))
-        # what no point that is not steep leads to follows its own scanner
-        signs[steep[rest]] = found if found.any() else facing[steep[rest]]
-        rest = rest[found == 0] if found.any() else rest[:0]
+    # only those are asked again of which a neighbour was told its side in the round before
+    counts = np.bincount(near.ravel(), minlength=len(signs))
+    followers, firsts = order_of(near.ravel()) // max(near.shape[1], 1), np.cumsum(counts) - counts
+    asked = np.arange(len(steep))
+    while len(asked):
+        found = np.sign((agreement[asked] * signs[near[asked]]).sum(axis=1))
+        told = steep[asked[found != 0]]
+        signs[told] = found[found != 0]
+        asked = np.unique(followers[ranges(firsts[told], counts[told])])
+        asked = asked[signs[steep[asked]] == 0]
+    # what no point that is not steep leads to follows its own scanner
+    left = steep[signs[steep] == 0]
+    signs[left] = facing[left]
     for _ in range(_REFINED):
         votes = (agreement * signs[near]).sum(axis=1)
         signs[steep] = np.where(votes < 0, -1, np.where(votes > 0, 1, signs[steep]))
@@ -222,7 +229,7 @@ def _merge(parts: np.ndarray, votes: np.ndarray, count: int) -> tuple[np.ndarray
     the best edge has the clearest vote, and of several such the first place.
     Returns (count,) the new number of each part, and (count,) whether it must flip to agree with the others in it.
     """
-    clearness, clearest = np.abs(votes), np.full(count, np.float32(-1))
+    clearness, clearest = np.nan_to_num(np.abs(votes)), np.full(count, np.float32(-1))
     for end in parts:
         np.maximum.at(clearest, end, clearness)
     best = np.full(count, parts.shape[1])

@@ -43,7 +43,8 @@ def views_within(
 def _free_places(points: np.ndarray, wanted: np.ndarray, spacing: float) -> np.ndarray:
     """(P, 3) places between (n, 3) wanted points and any, away from all (N, 3) points and far apart."""
     random = np.random.default_rng(0)
-    few = points[random.choice(len(points), min(_FEW, len(points)), replace=False)]
+    # squares of distances in single precision are off by more than a spacing in a large scan
+    few = points[random.choice(len(points), min(_FEW, len(points)), replace=False)].astype(np.float64)
     middles = (few[random.integers(len(few), size=_MIDDLES)] + wanted[random.integers(len(wanted), size=_MIDDLES)]) / 2
     squares = (middles**2).sum(axis=1)[:, None] - 2 * (middles @ few.T) + (few**2).sum(axis=1)
     middles = middles[squares.min(axis=1) > (_FREE * spacing) ** 2]
@@ -51,7 +52,7 @@ def _free_places(points: np.ndarray, wanted: np.ndarray, spacing: float) -> np.n
     while len(chosen) < min(_PLACES, len(middles)):
         distances = np.minimum(distances, ((middles - middles[chosen[-1]]) ** 2).sum(axis=1))
         chosen.append(int(distances.argmax()))
-    return middles[chosen] if len(middles) else middles
+    return (middles[chosen] if len(middles) else middles).astype(np.float32)
 
 
 def _seen_from(at: np.ndarray, places: np.ndarray, hiding: np.ndarray, least_behind: float) -> np.ndarray:
