@@ -24,16 +24,13 @@ from splat_addon.rendering import (
 )
 from splat_addon.rendering.features import glass
 from splat_addon.rendering.probes.glass import surfaces_of
+from tests.rendering.reflecting_scenes import glowing
 
 SETTINGS = Settings(method="quad", refraction=True)
 SKY, RED, GREEN = np.array([(0.1, 0.2, 0.9), (0.8, 0.1, 0.1), (0.1, 0.7, 0.1)])
 HEIGHT, RADIUS, BORDER, IOR = 0.6, 0.5, 0.1, 1.5
 GLASS = Material(roughness=0.0, ior=IOR, finish=Finish(transmission=1.0, tint_power=1.0))
 TINT = np.array((0.5, 0.9, 0.7))
-
-
-def glowing(color):
-    return Material(roughness=1.0, ior=1.0, emission=tuple(color))
 
 
 def board():

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from splat_addon.blender.engine import render_resources
-from splat_addon.rendering.upload import storages
 
 
 @pytest.fixture
@@ -23,14 +22,6 @@ def frames(scene, read_picture):
         return [read_picture(folder / f"frame_000{number}.exr") for number in (1, 2, 3)]
 
     return render
-
-
-@pytest.fixture
-def uploads(monkeypatch):
-    """A list that gets one entry whenever surfels are packed for the device."""
-    packed, pack = [], storages.pack_surfels
-    monkeypatch.setattr(storages, "pack_surfels", lambda surfels, order: packed.append(surfels) or pack(surfels, order))
-    return packed
 
 
 @pytest.fixture
@@ -66,12 +57,12 @@ def test_every_frame_is_the_still_of_its_moment(two, scene, frames, picture):
         assert np.array_equal(shot[number - 1], picture())
 
 
-def test_surfels_that_only_move_are_uploaded_once(two, frames, uploads):
+def test_surfels_that_only_move_are_uploaded_once(two, frames, packed_surfels):
     frames()
-    assert len(uploads) == 2
+    assert len(packed_surfels) == 2
 
 
-def test_surfels_whose_values_change_are_uploaded_again(two, frames, uploads):
+def test_surfels_whose_values_change_are_uploaded_again(two, frames, packed_surfels):
     standing, _ = two
     standing.shape_key_add(name="Basis")
     key = standing.shape_key_add(name="moved")
@@ -80,7 +71,7 @@ def test_surfels_whose_values_change_are_uploaded_again(two, frames, uploads):
         key.value = value
         key.keyframe_insert("value", frame=number)
     shot = frames()
-    assert len(uploads) == 4
+    assert len(packed_surfels) == 4
     assert not np.array_equal(shot[0][16:], shot[2][16:])
 
 
@@ -99,14 +90,14 @@ def test_values_that_a_script_changes_before_a_frame_are_seen(two, frames):
     assert np.diff(columns) == pytest.approx([4.4, 4.4], abs=0.5)
 
 
-def test_surfels_under_unchanging_modifiers_are_uploaded_once(two, frames, uploads, add_nodes):
+def test_surfels_under_unchanging_modifiers_are_uploaded_once(two, frames, packed_surfels, add_nodes):
     """Blender evaluates these surfels again for each frame because something of theirs moves; the result is the
     same.
     """
     for made in two:
         add_nodes(made, lambda tree, start, end: tree.links.new(start, end))
     frames()
-    assert len(uploads) == 2
+    assert len(packed_surfels) == 2
 
 
 def test_everything_is_let_go_after_the_last_frame(two, frames):
@@ -154,9 +145,9 @@ def test_everything_is_let_go_when_a_later_frame_fails(two, scene, frames):
     assert render_resources._kept is None
 
 
-def test_view_layers_share_what_lies_on_the_device(two, scene, frames, uploads):
+def test_view_layers_share_what_lies_on_the_device(two, scene, frames, packed_surfels):
     scene.view_layers.new("Second")
     scene.view_layers.new("Not rendered").use = False
     frames()
-    assert len(uploads) == 2
+    assert len(packed_surfels) == 2
     assert render_resources._kept is None

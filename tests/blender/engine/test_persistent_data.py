@@ -6,15 +6,6 @@ import numpy as np
 import pytest
 
 from splat_addon.blender.engine import final_render, render_resources
-from splat_addon.rendering.upload import storages
-
-
-@pytest.fixture
-def uploads(monkeypatch):
-    """A list that gets one entry whenever surfels are packed for the device."""
-    packed, pack = [], storages.pack_surfels
-    monkeypatch.setattr(storages, "pack_surfels", lambda surfels, order: packed.append(surfels) or pack(surfels, order))
-    return packed
 
 
 @pytest.fixture
@@ -27,15 +18,15 @@ def persistent(scene, picture):
     assert render_resources._kept is None
 
 
-def test_surfels_are_uploaded_once_for_all_renders(persistent, add_camera, add_surfels, picture, uploads):
+def test_surfels_are_uploaded_once_for_all_renders(persistent, add_camera, add_surfels, picture, packed_surfels):
     add_camera()
     add_surfels([(0, 0, 0), (1, 1, 0)], size=0.5)
     first = picture()
     np.testing.assert_array_equal(picture(), first)
-    assert first.any() and len(uploads) == 1 and render_resources._kept is not None
+    assert first.any() and len(packed_surfels) == 1 and render_resources._kept is not None
 
 
-def test_what_changed_is_seen(persistent, add_camera, add_surfels, picture, uploads):
+def test_what_changed_is_seen(persistent, add_camera, add_surfels, picture, packed_surfels):
     add_camera()
     made = add_surfels([(0, 0, 0), (1, 1, 0)], size=0.5)
     first = picture()
@@ -44,7 +35,7 @@ def test_what_changed_is_seen(persistent, add_camera, add_surfels, picture, uplo
     made.data.attributes["position"].data[0].vector = (-2, 0, 0)
     made.data.update()
     edited = picture()
-    assert len(uploads) == 2
+    assert len(packed_surfels) == 2
     assert np.abs(moved - first).max() > 0.5 and np.abs(edited - moved).max() > 0.5
 
 
